@@ -28,6 +28,7 @@ from mesa_mobility.crowd.planning.scheduler import DecisionScheduler
 from mesa_mobility.crowd.population import Population
 from mesa_mobility.crowd.running.recorder import DecisionRecorder, Recorder
 from mesa_mobility.crowd.running.statistics import Statistics
+from mesa_mobility.crowd.running.trace import Trace
 from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.scene import Scene
 from mesa_mobility.crowd.state.advance import LONG_AFTER, move
@@ -60,6 +61,9 @@ class Dynamics(Saved):
     Args:
         model: the model, whose behaviours may change at any time.
         scene: its floor, and what people can do on it.
+
+    Attributes:
+        trace: keeps where people have been in the last moments, where somebody watches.
     """
 
     def members(self) -> Mapping[str, Kind]:
@@ -71,6 +75,7 @@ class Dynamics(Saved):
         }
 
     def __init__(self, model: Run, scene: Scene) -> None:
+        self.trace: Trace | None = None
         self._model = model
         self._scene = scene
         self._scheduler = DecisionScheduler(
@@ -124,6 +129,8 @@ class Dynamics(Saved):
         # Those who have not set off face their first target, too.
         targets = self._set_targets(rows, np.concatenate([people.present, rows]), newcomers=True)
         agents = people.admit(rows, targets.points, new.headings, model)
+        if self.trace is not None:
+            self.trace.come(model.frame, rows, self._scene.crowd)
         self._next = model.frame
         people.look_over(model.frame)
         return agents
@@ -146,6 +153,8 @@ class Dynamics(Saved):
                 warnings.warn(said, UserWarning, stacklevel=4)
             statistics.count_people(model.elapsed)
             self._record(people.present)
+            if self.trace is not None:
+                self.trace.add(now, people.present, crowd)
         elif people.count > known:
             self._record(np.arange(known, people.count, dtype=np.int64))
         if self._plan_has_changed or shut:
@@ -158,6 +167,8 @@ class Dynamics(Saved):
             end = min(end, lifts.next_look(now))
         if len(escalators):
             end = min(end, escalators.next_look(now))
+        if self.trace is not None:
+            end = min(end, self.trace.next(now))
         expecting = len(model.sources) > 0 or model.sources.expecting
         every_frame = model.recorder is not None or expecting or len(model.doors) > 0
         if every_frame or self._plan_has_changed:
@@ -171,6 +182,9 @@ class Dynamics(Saved):
             self._next = moved.next
         self._record(walking)
         people.part(moved)
+        if self.trace is not None:
+            self.trace.add(end, moved.stay, crowd)
+            self.trace.leave(end, moved.gone, crowd)
         if before is not None:
             model.doors.look(walking, before, crowd)
         statistics.add(moved, end - now, model.elapsed)

@@ -41,7 +41,12 @@ def make_crowd_view(
             lambda: serialization.floor(plan, building=model.building), [plan, plan.version]
         )
         colouring = colouring_named(colour_by, model)
-        frame = serialization.frame(model, colouring, observer, run=id(model), number=model.frame)
+        shown = solara.use_ref((observer, -1))
+        since = shown.current[1] if shown.current[0] is observer else -1
+        frame = serialization.frame(
+            model, colouring, observer, run=id(model), number=model.frame, since=since
+        )
+        shown.current = observer, model.frame
         CrowdCanvas(frame=frame, floor=floor, height=height)
 
     return CrowdView

@@ -4,7 +4,6 @@
 
 const RATE = 30; // frames a second
 const BLEND = 6; // frames
-const FARTHEST_APART = 60; // frames between two samples of somebody who is watched
 
 // Quaternions (x, y, z, w) and vectors lie in arrays, from an index on.
 function multiply(a, i, b, j, out, k) {
@@ -175,14 +174,6 @@ class Track {
     const u = (frame - frames[k]) / (frames[k + 1] - frames[k]);
     const between = (values) => values[k] + u * (values[k + 1] - values[k]);
     return [between(x), between(y), between(heading), z ? between(z) : 0];
-  }
-
-  // Whether samples near a time say where the person was.
-  covers(frame) {
-    const { frames } = this, last = frames.length - 1;
-    if (frame < frames[0] - 1e-6) return false;
-    this.at(frame);
-    return this.near === last || frames[this.near + 1] - frames[this.near] < FARTHEST_APART;
   }
 
   forget(frame) {

@@ -252,6 +252,10 @@ class CrowdModel(RefugeFigures, mesa.Model):
 
     def remove_pedestrians(self, people: Iterable[Pedestrian]) -> None:
         """Take people out of the model."""
+        people = [each for each in people if self.crowd.active[each.row]]
+        if self.dynamics.trace is not None:
+            rows = np.array([each.row for each in people], dtype=np.int64)
+            self.dynamics.trace.leave(self.frame, rows, self.crowd)
         self.population.remove(people)
         self.population.look_over(self.frame)
 

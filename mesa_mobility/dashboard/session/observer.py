@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from operator import itemgetter
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from mesa_mobility import PedestrianModel
+from mesa_mobility.crowd.running.trace import Trace
 from mesa_mobility.dashboard.session.storeys import own_openings
 from mesa_mobility.results import passages
 
@@ -45,6 +49,7 @@ class Observer:
 
     Attributes:
         openings: names of the doors and exits, without those of stairs and lifts.
+        trace: where people have been; of all observers of the model.
     """
 
     def __init__(self, model: PedestrianModel) -> None:
@@ -52,6 +57,8 @@ class Observer:
         self._openings = own_openings(model.floor_plan, model.building)
         self.openings = tuple(opening.name for opening in self._openings)
         self._net = np.zeros(len(self._openings), dtype=np.int64)
+        self._passed: list[tuple[str, int, float]] = []
+        self.trace = model.dynamics.trace = model.dynamics.trace or Trace()
         self._waited = np.zeros(0)
         self._elapsed = model.elapsed
         self._series: dict[str, list[float]] = {
@@ -74,10 +81,16 @@ class Observer:
         self._make_room()
         return self._waited[rows]
 
-    def passed(self) -> list[tuple[str, int]]:
-        """Name and net passages, in the direction of most, of each opening that has any."""
-        pairs = zip(self.openings, np.abs(self._net).tolist(), strict=True)
-        return [(name, people) for name, people in pairs if people]
+    def passed(self, since: float) -> list[tuple[str, int, float]]:
+        """Net passages of openings, in the direction of most, after each step that changed them.
+
+        Args:
+            since: seconds; only later steps count.
+
+        Returns:
+            Name, passages since the start, and seconds at the end of the step, in order of time.
+        """
+        return self._passed[bisect_right(self._passed, since, key=itemgetter(2)) :]
 
     def columns(self) -> dict[str, list[float]]:
         """The time series so far, an entry each second; may be called from any thread.
@@ -107,7 +120,9 @@ class Observer:
         places = self._places(self._rows)
         for k, opening in enumerate(self._openings):
             _, direction = passages(self._before, places, opening.a, opening.b)
-            self._net[k] += int(direction.sum())
+            if change := int(direction.sum()):
+                self._net[k] += change
+                self._passed.append((opening.name, abs(int(self._net[k])), model.elapsed))
         self._remember()
         crowd, rows = model.crowd, model.rows
         slow = np.hypot(crowd.vx[rows], crowd.vy[rows]) < SLOW

@@ -113,6 +113,8 @@ class Shown:
         self.together: AbstractContextManager[Any] = nullcontext()
         self.run_number = 0
         self._sent = self._seen = self._series_number = 0
+        self._frames: dict[int, int] = {}
+        self._got = -1
         self._explained: Explanation | None = None
         self._frame_at = self._series_at = self._decision_at = 0.0
 
@@ -127,6 +129,8 @@ class Shown:
     def show_new(self, recipe: Recipe, model: PedestrianModel, plan: PlanChanges) -> None:
         """Show a model that has just been made; its behaviours are shown apart."""
         self.run_number += 1
+        self._frames.clear()
+        self._got = -1
         self.recipe.set(recipe)
         self.problem.set("")
         self.mark(-1)
@@ -172,6 +176,7 @@ class Shown:
         heard = self._sent - self._seen < UNDER_WAY or now - self._frame_at > RESEND
         if always or (heard and now - self._frame_at >= FRAME_INTERVAL):
             self._sent, self._frame_at = self._sent + 1, now
+            self._frames[self._sent] = model.frame
             self.frame.set(
                 serialization.frame(
                     model,
@@ -179,6 +184,7 @@ class Shown:
                     observer,
                     run=self.run_number,
                     number=self._sent,
+                    since=self._known_until(),
                     bodies=self._bodies,
                 )
             )
@@ -191,6 +197,13 @@ class Shown:
         if always or now - self._decision_at >= DECISION_INTERVAL:
             self._decision_at = now
             self._tell_decision(model)
+
+    def _known_until(self) -> int:
+        """The model's last frame that the page has got, or -1."""
+        seen = self._seen
+        for number in [each for each in self._frames if each <= seen]:
+            self._got = self._frames.pop(number)
+        return self._got
 
     def _tell_decision(self, model: PedestrianModel) -> None:
         if model.watch is None:

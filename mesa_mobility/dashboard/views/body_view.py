@@ -11,6 +11,7 @@ from mesa_mobility.dashboard.views.canvases import canvas_component
 
 @canvas_component(
     "body_view.vue",
+    "between.js",
     "frames.js",
     "past.js",
     "plan/curves.js",

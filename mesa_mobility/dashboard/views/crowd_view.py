@@ -14,6 +14,7 @@ SERVICE = service_limits().tolist()
 @canvas_component(
     "crowd_view.vue",
     "plan/floor.js",
+    "between.js",
     "frames.js",
     "mapped.js",
     "past.js",

@@ -1,10 +1,11 @@
 // What all canvases of the page share; see canvases.py.
 
-function numbers(text) {
+// Numbers of a kind from base64.
+function numbers(text, kind = Float32Array) {
   // A loop: `Uint8Array.from` with a function takes thirty times as long.
   const bytes = atob(text), values = new Uint8Array(bytes.length);
   for (let k = 0; k < bytes.length; k += 1) values[k] = bytes.charCodeAt(k);
-  return new Float32Array(values.buffer);
+  return new kind(values.buffer);
 }
 
 // Lines of an SVG for the joints of a pose: 0 from the side, x forwards; 1 from the front.

@@ -31,7 +31,7 @@ const FRAMES = {
       }
       this.arrived = time;
       this.to = next;
-      this.keepPast(next, frame.passed);
+      this.keepPast(next, frame);
       this.number(this.from ? this.from.people : new Float32Array(0));
       this.fresh = true;
       this.seen(next.number);
@@ -64,7 +64,7 @@ const FRAMES = {
         elapsed: this.from.elapsed + share * (to.elapsed - this.from.elapsed) };
     },
     // What is drawn: the present, or the time that is looked at.
-    pictureAt(time) { return this.cursor === null ? this.between(time) : this.past.at(this.cursor); },
+    pictureAt(time) { return this.cursor === null ? this.between(time) : this.past.at(this.cursor, this.floor.storeys); },
     moving(time) {
       return this.from !== null && time - this.arrived < this.interval + 40;
     },

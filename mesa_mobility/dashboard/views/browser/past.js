@@ -1,28 +1,44 @@
 // What a run has shown so far, and the time that is looked at: a part of the crowd's views.
 
-const PAST_EVERY = 0.1, PAST_GAP = 5, PAST_MOST = 96e6; // simulated seconds between two pictures; bytes of all of them
-const PAST_BODIES = 120, TOLD_EVERY = 250; // seconds for which bodies are kept; milliseconds between two of the slider
+const PAST_EVERY = 0.1, PAST_GAP = 5; // simulated seconds between two pictures
+const PAST_MOST = 96e6, PAST_EACH = 256; // bytes of all of them, and of each beside its people
+const POSES_KEPT = 120, POSES_APART = 2; // seconds for which bodies are kept, and for which they go on untold
+const TOLD_EVERY = 250; // milliseconds between two of the slider
 
-// Pictures of one run in the order of time: both views of a page share them.
+// Pictures of one run in the order of time, those that were drawn and those between: both views of a page share them.
 class Past {
   constructor(run) {
     this.run = run;
     this.pictures = [];
     this.bytes = 0;
+    this.came = new Map(); // row -> when and where, see between.js
+    this.left = new Map();
     this.persons = new Map(); // bodies
+    this.posed = []; // seconds at which these were told
     this.doors = new Map(); // name -> seconds of passages
   }
 
-  // picture: {elapsed, people, legend, inside}, see frames.js; passed: [name, people] of each door.
-  add(picture, passed = []) {
-    const { pictures } = this, last = pictures[pictures.length - 1];
-    if (last && picture.elapsed < last.elapsed + PAST_EVERY - 1e-6) return;
+  // picture: {elapsed, people, legend, inside}; passed and between: what serialization.py tells with it. What was told
+  // before does no harm.
+  take(picture, { passed, between: since }) {
+    for (const each of passed) this.count(...each);
+    for (const each of passagesOf(since.came)) this.came.set(...each);
+    for (const each of passagesOf(since.left)) this.left.set(...each);
+    for (const each of picturesBetween(since, this.pictures[this.pictures.length - 1], picture)) this.add(each, 1e-6);
+    this.add(picture, PAST_EVERY - 1e-6);
+  }
+
+  add(picture, later) {
+    const { pictures } = this, size = ({ people }) => people.byteLength + PAST_EACH;
+    if (pictures.length && picture.elapsed < this.last + later) return;
     pictures.push(picture);
-    this.bytes += picture.people.byteLength;
-    for (const [name, people] of passed) this.count(name, people, picture.elapsed);
+    this.bytes += size(picture);
     if (this.bytes < PAST_MOST) return;
     const gone = Math.ceil(pictures.length / 16); // at once: to shift a long list takes time
-    for (const { people } of pictures.splice(0, gone)) this.bytes -= people.byteLength;
+    for (const each of pictures.splice(0, gone)) this.bytes -= size(each);
+    for (const known of [this.came, this.left]) {
+      for (const [row, { elapsed }] of known) if (elapsed < this.first) known.delete(row);
+    }
   }
 
   count(name, people, elapsed) {
@@ -37,38 +53,43 @@ class Past {
   get last() { return this.pictures.length ? this.pictures[this.pictures.length - 1].elapsed : 0; }
 
   // The number of the last picture until a time; that of the first before it.
-  until(elapsed) {
-    let low = 0, high = this.pictures.length - 1;
-    while (low < high) {
-      const middle = (low + high + 1) >> 1;
-      if (this.pictures[middle].elapsed <= elapsed + 1e-9) low = middle;
-      else high = middle - 1;
-    }
-    return low;
+  until(elapsed) { return lastUntil(this.pictures, elapsed, (each) => each.elapsed); }
+
+  // The poses of bodies were told at a time.
+  pose(elapsed) {
+    const { posed } = this;
+    posed.push(elapsed);
+    if (posed[posed.length >> 1] < elapsed - POSES_KEPT) posed.splice(0, posed.length >> 1);
   }
 
-  // Everybody at a time, between the picture before and the one after.
-  at(elapsed) {
+  // Whether the poses at a time are known.
+  wasPosed(elapsed) {
+    const k = lastUntil(this.posed, elapsed), { posed } = this;
+    return k >= 0 && posed[k] <= elapsed + 1e-9 && (k + 1 === posed.length || posed[k + 1] - posed[k] < POSES_APART);
+  }
+
+  // The pictures before and after a time; the same one twice where it is alone.
+  around(elapsed) {
     const k = this.until(elapsed), a = this.pictures[k], b = this.pictures[k + 1];
-    if (!b || elapsed <= a.elapsed || b.elapsed - a.elapsed > PAST_GAP) return a;
-    const share = (elapsed - a.elapsed) / (b.elapsed - a.elapsed);
-    return { ...a, elapsed, people: mixed(a.people, b.people, share) };
+    return !b || elapsed <= a.elapsed || b.elapsed - a.elapsed > PAST_GAP ? [a, a] : [a, b];
+  }
+
+  // Everybody at a time.
+  at(elapsed, storeys) {
+    const [a, b] = this.around(elapsed);
+    return a === b ? a : mixed(a, b, elapsed, this, storeys);
   }
 }
 
-// People of one picture on their way to their places in the next.
-function mixed(from, to, share) {
-  const next = new Map(), people = new Float32Array(from);
-  for (let k = 0; k < to.length; k += FIELDS) next.set(to[k], k);
-  for (let k = 0; k < from.length; k += FIELDS) {
-    const j = next.get(from[k]);
-    if (j === undefined) continue; // leaves
-    for (const i of [1, 2, 5]) people[k + i] += share * (to[j + i] - from[k + i]);
-    let turn = to[j + 3] - from[k + 3];
-    turn -= 2 * Math.PI * Math.round(turn / (2 * Math.PI));
-    people[k + 3] += share * turn;
+// The number of the last of rising times until a time; 0 before the first, -1 of none.
+function lastUntil(times, elapsed, of = (each) => each) {
+  let low = 0, high = times.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (of(times[middle]) <= elapsed + 1e-9) low = middle;
+    else high = middle - 1;
   }
-  return people;
+  return Math.min(low, high);
 }
 
 const PAST = {
@@ -84,14 +105,14 @@ const PAST = {
     behind() { return this.cursor === null ? "live" : `${(this.pastLast - this.cursor).toFixed(1)} s ago`; },
   },
   methods: {
-    keepPast(picture, passed) {
+    keepPast(picture, told) {
       const known = globalThis.mesaMobilityPast;
       if (!known || known.run !== picture.run || picture.elapsed < known.last - 1e-6) {
         globalThis.mesaMobilityPast = new Past(picture.run);
         this.cursor = null;
       }
       this.past = globalThis.mesaMobilityPast;
-      this.past.add(picture, passed);
+      this.past.take(picture, told);
       const time = performance.now();
       if (time - this.toldAt < TOLD_EVERY && picture.elapsed > 0) return;
       this.tellPast(time);

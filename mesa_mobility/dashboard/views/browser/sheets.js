@@ -2,6 +2,8 @@
 
 const STAIR_END = 0.3; // metres that a flight goes on on its copy
 
+function sheetAt({ sheets }, px) { return sheets.find(({ right }) => px <= right); }
+
 // The true place [x, y, z] of a place in the plane, from whose floor a lift has carried somebody by risen.
 function trueOf({ sheets, flights }, px, py, risen = 0) {
   const number = sheets.findIndex(({ right }) => px <= right), { shift, elevation } = sheets[number];
