@@ -108,7 +108,7 @@ def write_film_of_bodies(
         ResultsError: another suffix, no ffmpeg, no browser, a damaged camera path, a size out of
             bounds, nobody to show, or the file cannot be written.
     """
-    from mesa_mobility.animation.film_bodies import LARGEST, TYPES, camera_path, pictures
+    from mesa_mobility.animation.film_bodies import LARGEST, camera_path, pictures
     from mesa_mobility.animation.page import page_text
     from mesa_mobility.animation.reels import write_reel
 
@@ -127,8 +127,8 @@ def write_film_of_bodies(
         bank=excerpt.bank,
     )
 
-    def told() -> Iterator[bytes]:
-        drawn = pictures(page, frames, TYPES[suffix], size, views, colour=colour)
+    def told() -> Iterator[NDArray[np.uint8]]:
+        drawn = pictures(page, frames, size, views, colour=colour)
         for done, picture in enumerate(drawn, start=1):
             excerpt.progress(done, len(frames))
             yield picture
@@ -181,7 +181,7 @@ def write_film(
     Raises:
         ResultsError: another suffix, no ffmpeg, nobody to show, or the file cannot be written.
     """
-    from mesa_mobility.animation.reels import still, write_reel
+    from mesa_mobility.animation.reels import write_reel
 
     selection = selection or Selection()
     suffix = _checked(path, speed)
@@ -189,8 +189,7 @@ def write_film(
     frames = _frames(trajectories, selection, speed)
     pictures = _pictures(trajectories, plan, shown, frames, progress)
     with replacing(path, ResultsError) as temporary:
-        coded = (still(picture, suffix) for picture in pictures)
-        write_reel(coded, temporary, suffix, PICTURES_A_SECOND)
+        write_reel(pictures, temporary, suffix, PICTURES_A_SECOND)
 
 
 def _pictures(

@@ -20,19 +20,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.reports.pdf import browser_program
 
-TYPES = {".webp": "image/webp", ".gif": "image/png", ".mp4": "image/jpeg"}
-"""Pictures that the browser sends for the film of a suffix."""
-
-QUALITY = 0.82
-
 LARGEST = 4096
 """Pixels of a side."""
 
-_LARGEST_PICTURE = 64_000_000
 _LONGEST_PATH = 1000
 _PATIENCE_S = 120.0
 """For the next picture; the first has a page to open."""
@@ -77,19 +72,17 @@ def _numbers(value: object, count: int) -> bool:
 def pictures(
     page: str,
     frames: Sequence[int],
-    kind: str,
     size: tuple[int, int],
     camera: dict[str, Any] | None = None,
     *,
     colour: str = "clothes",
     glass: bool = False,
-) -> Iterator[bytes]:
-    """Pictures of a run, one after the other, as files of a kind.
+) -> Iterator[NDArray[np.uint8]]:
+    """Pictures of a run, one after the other: (high, wide, 4) red, green, blue and opacity.
 
     Args:
         page: what ``page_text`` makes.
         frames: frames of the run.
-        kind: "image/webp", "image/png" or "image/jpeg".
         size: width and height, pixels.
         camera: what ``camera_path`` reads; by default the whole floor from aside.
         colour: what colours of people stand for: "clothes", "speed" or "type".
@@ -102,8 +95,6 @@ def pictures(
         "frames": list(frames),
         "width": size[0],
         "height": size[1],
-        "type": kind,
-        "quality": QUALITY,
         "path": camera,
         "glass": glass,
         "colour": colour,
@@ -111,7 +102,7 @@ def pictures(
     program = browser_program("draw a film in three dimensions")
     with _Studio(page, asked) as studio, _browser(program, studio.address, size) as process:
         for _ in frames:
-            yield studio.next(process)
+            yield np.frombuffer(studio.next(process), np.uint8).reshape(size[1], size[0], 4)
 
 
 class _Studio(ThreadingHTTPServer):
@@ -122,6 +113,7 @@ class _Studio(ThreadingHTTPServer):
     def __init__(self, page: str, asked: dict[str, Any]) -> None:
         super().__init__(("127.0.0.1", 0), _Handler)
         self.token = secrets.token_urlsafe(16)
+        self.length = 4 * asked["width"] * asked["height"]
         self.page = page.replace("const ASKED = null", f"const ASKED = {json.dumps(asked)}", 1)
         self.taken: queue.Queue[bytes] = queue.Queue(maxsize=4)
         self.address = f"http://127.0.0.1:{self.server_address[1]}/{self.token}/"
@@ -159,7 +151,7 @@ class _Handler(BaseHTTPRequestHandler):
         length = int(self.headers.get("Content-Length") or 0)
         if not self.path.startswith(f"/{self.server.token}/picture/"):
             self._answer(404, b"")
-        elif not 0 < length <= _LARGEST_PICTURE:
+        elif length != self.server.length:
             self._answer(413, b"")
         else:
             self.server.taken.put(self.rfile.read(length))

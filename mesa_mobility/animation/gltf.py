@@ -83,8 +83,9 @@ def write_glb(
         people: those shown; the animation begins with the first of their frames.
         plan: floor and walls, or a building.
         path: the file.
-        within: metres by which a pelvis, and the far end of what a joint carries, may be off
-            between the frames that are kept. From 15 mm on turns have 8 bits, otherwise 16.
+        within: metres by which a pelvis may be off between the frames that are kept, and by which
+            each joint alone may move the far end of what it carries; joints of a limb add up. From
+            15 mm on turns have 8 bits, otherwise 16.
         progress: called with the number of people done.
 
     Raises:

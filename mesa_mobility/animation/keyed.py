@@ -13,7 +13,8 @@ from mesa_mobility.animation.people import Walker
 from mesa_mobility.bodies.skeleton import JOINTS, PARENTS, TURNING
 
 WITHIN = 0.005
-"""Metres by which the far end of what a joint carries, and a pelvis, may be off of few people."""
+"""Metres by which a pelvis of few people may be off, and by which each joint may move the far end
+of what it carries."""
 
 FEW = 100
 """People up to whom motion is as near as that; in a larger crowd everybody is seen from farther."""
@@ -81,7 +82,8 @@ def keyed(walker: Walker, within: float) -> Keyed:
 
     Args:
         walker: the person.
-        within: metres by which the pelvis, and the far end of what each joint carries, may be off.
+        within: metres by which the pelvis may be off, and by which each joint alone may move the
+            far end of what it carries.
     """
     (frames,) = key_frames(walker.pelvis[None], np.array([within]))
     turns = walker.turns().swapaxes(0, 1)

@@ -56,20 +56,18 @@ class Scenery {
   }
 
   storey({ free, walls, solids, openings, refuges, elevation }, colours, through) {
-    const look = through ? { transparent: true, opacity: SEE_THROUGH, depthWrite: false, side: THREE.DoubleSide } : {};
-    this.put(new THREE.ShapeGeometry(free.map(shape)).translate(0, 0, elevation),
-      new THREE.MeshBasicMaterial({ color: colours.free, ...look }), elevation);
+    this.put(new THREE.ShapeGeometry(free.map(shape)).translate(0, 0, elevation), flat(colours.free, through ? SEE_THROUGH : 1),
+      elevation);
     for (const refuge of refuges || []) {
-      this.put(new THREE.ShapeGeometry(shape(refuge.rings)).translate(0, 0, elevation + MARKING),
-        new THREE.MeshBasicMaterial({ color: REFUGE, side: THREE.DoubleSide }), elevation);
+      this.put(new THREE.ShapeGeometry(shape(refuge.rings)).translate(0, 0, elevation + MARKING), flat(REFUGE), elevation);
     }
     for (const { a, b, kind, open } of openings || []) {
       const long = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
       const across = [(-STRIPE * (b[1] - a[1])) / long, (STRIPE * (b[0] - a[0])) / long];
       const corners = [[a, 1], [b, 1], [b, -1], [a, -1]].flatMap(([p, s]) => [p[0] + s * across[0], p[1] + s * across[1],
         elevation + OVER_FLOOR]);
-      this.put(triangles(corners, [0, 1, 2, 0, 2, 3]), new THREE.MeshBasicMaterial({
-        color: open === false ? OPENINGS.closed : OPENINGS[kind] || OPENINGS.door, side: THREE.DoubleSide }), elevation);
+      this.put(triangles(corners, [0, 1, 2, 0, 2, 3]), flat(open === false ? OPENINGS.closed : OPENINGS[kind] || OPENINGS.door),
+        elevation);
     }
     this.put(contactGeometry(walls, elevation + OVER_FLOOR / 2), this.contact, elevation);
     for (const [kind, [side, top]] of Object.entries(SOLIDS)) {
@@ -78,8 +76,7 @@ class Scenery {
       this.put(sideGeometry(own, elevation), this.see(shaded(side), kind), elevation);
       for (const height of new Set(own.map((each) => each.top))) {
         const level = own.filter((each) => each.top === height).map(({ rings }) => shape(rings));
-        this.put(new THREE.ShapeGeometry(level).translate(0, 0, elevation + height), new THREE.MeshBasicMaterial({ color: top }),
-          elevation);
+        this.put(new THREE.ShapeGeometry(level).translate(0, 0, elevation + height), flat(top), elevation);
       }
     }
   }
@@ -160,6 +157,13 @@ function shape([outer, ...holes]) {
   const found = points(outer, new THREE.Shape());
   found.holes = holes.map((each) => points(each, new THREE.Path()));
   return found;
+}
+
+// One colour from all sides: see SHADE in troop.js on the price of a pixel.
+function flat(colour, opacity = 1) {
+  return new THREE.ShaderMaterial({ vertexShader: FLAT_VERTEX, fragmentShader: FLAT_FRAGMENT, glslVersion: THREE.GLSL3,
+    side: THREE.DoubleSide, transparent: opacity < 1, depthWrite: opacity === 1,
+    uniforms: { painting: { value: [...channels(colour), opacity] } } });
 }
 
 function shaded(colour) {

@@ -11,7 +11,7 @@ const QUICK = 0.018; // seconds between pictures from which on there is more det
 const DETAIL = [{ slow: 0.042, share: 1, afar: 1 }, { slow: 0.042, share: 0.8, afar: 1 }, { slow: 0.042, share: 0.65, afar: 1 },
   { slow: 0.085, share: 0.5, afar: 1 }, { slow: 0.085, share: 0.5, afar: 2 }, { slow: Infinity, share: 0.5, afar: 4 }];
 const FROM = [0.31, -0.77, 0.72], ROOM_HIGH = 1.8, MARGIN = 1.06; // where the camera stands; metres; room round the floor
-const SEATED = "wheelchair";
+const SEATED = "wheelchair", RING = "#e6007e";
 
 class Stage {
   // figure: {skeleton, meshes, looks}, see animation/figures/levels.py and animation/figures/clothes.py. Throws where a page cannot draw so.
@@ -33,8 +33,7 @@ class Stage {
     this.bones = { value: null };
     this.tops = figure.looks.map(([top]) => channels(top));
     this.troops = new Troops(figure.meshes, figure.looks, this.bones, this.scene);
-    this.ring = new THREE.Mesh(new THREE.RingGeometry(0.36, 0.46, 24),
-      new THREE.MeshBasicMaterial({ color: 0xe6007e, side: THREE.DoubleSide }));
+    this.ring = new THREE.Mesh(new THREE.RingGeometry(0.36, 0.46, 24), flat(RING));
     this.scene.add(this.ring);
     this.scenery = new Scenery(this.scene);
     this.how = "orbit";

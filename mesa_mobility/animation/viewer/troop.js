@@ -68,6 +68,8 @@ const WALL_VERTEX = `
   }`;
 
 const WALL_FRAGMENT = "uniform float opacity; in vec3 vColour; out vec4 painted; void main() { painted = vec4(vColour, opacity); }";
+const FLAT_VERTEX = "void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }";
+const FLAT_FRAGMENT = "uniform vec4 painting; out vec4 painted; void main() { painted = painting; }";
 const CONTACT_VERTEX = `
   in float dark; out float vDark;
   void main() {
