@@ -127,6 +127,13 @@ def test_settings_preset_map_and_seed_reach_the_model(command, tmp_path):
     assert {key: summary[key] for key in expected} == expected
 
 
+def test_a_folder_with_the_name_of_a_model_is_no_plan(command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "corridor").mkdir()
+    outcome = command("run", "corridor", "--seed", 5, "--json", "--out", tmp_path / "out")
+    assert (outcome.status, last_line(outcome)["model"]) == (0, "corridor")
+
+
 def test_a_seed_is_drawn_and_printed(command):
     seeds = {last_line(command("run", "corridor", "--json"))["seed"] for _ in range(3)}
     assert len(seeds) == 3

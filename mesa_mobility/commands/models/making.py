@@ -102,10 +102,14 @@ def model_of_file(text: str, options: ModelOptions) -> tuple[str, ModelOptions]:
         FloorPlanError: a folder or a zip that is neither a plan nor a scenario.
     """
     from mesa_mobility.crowd.model_files import is_model_file
+    from mesa_mobility.plugins import registry
 
     path = Path(text)
-    # Formats are looked for only where there is a file that is no model.
+    # Formats are looked for only where there is a file that is no model. A folder may have the name
+    # of a model, such as that of its run.
     if not path.exists() or not (path.is_dir() or path.suffix) or is_model_file(text):
+        return text, options
+    if path.is_dir() and text in registry.models():
         return text, options
     from mesa_mobility.floorplan.formats.plan_format import PLANS
     from mesa_mobility.floorplan.scenario import has_people
