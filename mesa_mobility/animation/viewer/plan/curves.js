@@ -78,7 +78,8 @@ class Curves {
       ctx.moveTo(x, 0);
       ctx.lineTo(x, still.height);
       ctx.stroke();
-      ctx.fillText(`${+t.toFixed(2)} s`, x + 3 * r, 0);
+      const label = `${+t.toFixed(2)} s`;
+      ctx.fillText(label, Math.min(x + 3 * r, still.width - ctx.measureText(label).width), 0);
     }
     ctx.lineWidth = 1.8 * r;
     this.doors.forEach((door, k) => {
