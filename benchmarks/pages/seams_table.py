@@ -15,11 +15,10 @@ from blocks import give, table
 from numpy.typing import NDArray
 from shapely import box
 from shapely.affinity import translate
-from stairs_scenes import GOING, RISE, RISERS, TREAD, WIDTH
+from stairs_scenes import GOING, RISE, RISERS, TREAD, WIDTH, middle_flow
 
 from mesa_mobility import Building, Exit, FloorPlan, Level, Stairs
 from mesa_mobility.floorplan import Seam, SpeedZone
-from mesa_mobility.results import flow
 from mesa_mobility.verification.runs import crowd_model, evacuate
 
 LIMIT_S = 900.0
@@ -150,8 +149,7 @@ def leave(plan: FloorPlan | Building, seed: int) -> dict[str, Any]:
     frames = np.zeros(PEOPLE)
     np.maximum.at(frames, tracks.person, tracks.frame)
     out = np.sort(frames / tracks.frame_rate)
-    sixth = PEOPLE // 6
-    return {"left": model.inside, "last out": out[-1], "flow": flow(out[sixth - 1 : 5 * sixth])}
+    return {"left": model.inside, "last out": out[-1], "flow": middle_flow(out, PEOPLE)}
 
 
 def ratio_interval(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[float, float]:

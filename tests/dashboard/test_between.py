@@ -1,4 +1,4 @@
-"""What a message tells of the time since the last one that the page has got."""
+"""Messages to the page tell of the time since the last one that it has got."""
 
 import base64
 from pathlib import Path

@@ -255,7 +255,7 @@ class Lifts(Saved):
         waited = frame - self._since[lift]
         if len(outside) and waited < GIVES_UP:
             return
-        # Whoever has set foot in it still rides.
+        # People who have set foot in the car still ride.
         self._rides[np.setdiff1d(outside, there)] = NOBODY
         if len(there) and waited >= DWELL:
             rise = [

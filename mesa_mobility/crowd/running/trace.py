@@ -51,7 +51,7 @@ NOBODY = Places(np.empty(0, np.int64), np.empty(0, np.int32), *np.empty((3, 0)))
 
 
 class Traced(NamedTuple):
-    """What a trace has of some time.
+    """The places that a trace keeps from some time.
 
     Attributes:
         frames: of the samples, rising.
@@ -124,7 +124,7 @@ class Trace:
             self.every = self._least
 
     def until(self, frame: int) -> Traced:
-        """What is kept of the time before a frame, with those who have come or left in it."""
+        """The places kept from before a frame, and those of people who came or left up to it."""
         # At once: the run may go on in another thread.
         samples = [each for each in tuple(self._samples) if each[0] < frame]
         return Traced(

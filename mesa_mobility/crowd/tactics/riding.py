@@ -122,11 +122,13 @@ class RideLifts(Tactic):
                 near = np.flatnonzero(who & (to_door < CALLS))
                 if not len(near):
                     continue
-                before = shaft.before_door(k)[None].repeat(len(near), axis=0)
-                there = deciding.site.targets(before, deciding.destinations[near])
-                # Some stand nearer to the door than that place.
-                saved = np.hypot(*(shaft.before_door(k) - shaft.door(k)))
-                way = to_door[near] + there.distances - saved
+                before = shaft.before_door(k)
+                there = deciding.site.targets(
+                    before[None].repeat(len(near), axis=0), deciding.destinations[near]
+                )
+                # From the door on, since some stand nearer to it than that place.
+                onward = there.distances - np.hypot(*(before - shaft.door(k)))
+                way = to_door[near] + onward
                 by = (there.gates == opening) & (way < desired.targets.distances[near] + DETOUR)
                 number[near[by]], stop[near[by]], away[near[by]] = lift, k, to_door[near[by]]
         return number, stop, away

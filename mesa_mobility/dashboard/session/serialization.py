@@ -60,8 +60,8 @@ def frame(
         observer: what has been counted of the model.
         run: changes when time starts anew.
         number: of this frame.
-        since: last frame of the model that the page has got, or -1. What the trace has of the time
-            until then is forgotten.
+        since: last frame of the model that the page has got, or -1. The trace forgets the places
+            until then.
         bodies: adds ``bodies``, the poses in the three-dimensional view.
     """
     rows, crowd = model.rows, model.crowd

@@ -34,9 +34,6 @@ def pass_abreast(
     corner. People pass at the point of that line nearest to them.
     """
     clearance = ways.view_clearance
-    flight = np.zeros(len(ways.kind), np.bool_)
-    for corner in ways.flight_corners:
-        flight[corner] = True
     for k in range(len(corners)):
         if corners[k, 0] < 0 or areas[k] <= 0.0:
             continue
@@ -51,7 +48,7 @@ def pass_abreast(
         out = min((x - cx) * ux + (y - cy) * uy, areas[k] / away)
         if out <= 0.0:
             continue
-        beside = flight[corners[k, 0]]
+        beside = corners[k, 0] in ways.flight_corners
         room = _room(sight, (x, y), (cx, cy), (ux, uy), beside)
         out = min(out, room - clearance)
         if out <= 0.0 or not (

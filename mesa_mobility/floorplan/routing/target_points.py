@@ -68,7 +68,7 @@ def aim_at(
         opening = gate
         px, py = _through(sight, ways, x, y, px, py, gate, own)
         corner = -1
-    if corner < 0:
+    if corner < 0 and len(ways.flight_corners) > 0:
         corner = _flight_corner_passed(ways, x, y, px, py, after)
     return length, opening, px, py, corner
 

@@ -37,7 +37,7 @@ def test_samples_are_what_was_recorded(frames_per_step):
     found = made.dynamics.trace.until(made.frame)
     out = last[~made.crowd.active[last[:, 1].astype(int)]]
     assert len(out) > 3
-    # Whoever crosses an exit in a frame is recorded in it, but not inside any more.
+    # People who cross an exit in a frame are recorded in it, but not inside any more.
     gone = {(frame, row) for frame, row in out[:, :2]}
     kept = [
         each
