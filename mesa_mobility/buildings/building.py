@@ -17,7 +17,7 @@ from mesa_mobility.buildings.checks import check_joined, check_names
 from mesa_mobility.buildings.escalator import Escalator
 from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.footing import Footing
-from mesa_mobility.buildings.headroom import check_headroom
+from mesa_mobility.buildings.headroom import check_headroom, check_shafts
 from mesa_mobility.buildings.level import Level, sheet_of
 from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.places import Places
@@ -47,7 +47,8 @@ class Building:
 
     A flight should be at least 2.7 m long in plan, twice the longest step: on a shorter one people
     see less far and walk more slowly. Where a flight passes over a level, or under it, its place
-    on the plan of the levels that it joins is taken from the floor, with 0.35 m beyond it.
+    on the plan of the levels that it joins is taken from the floor, with 0.35 m beyond it. A level
+    has no floor in the shaft of a lift that passes it.
 
     Args:
         levels: at least one.
@@ -60,8 +61,8 @@ class Building:
             an exit with the name of one of them; stairs, ramps or escalators that lead nowhere, do
             not fit their rise, have no floor before them, or overlap an obstacle, an opening, a
             refuge, each other or a lift; refuges that overlap each other or a lift; levels from
-            which nothing leads to an exit; floors less than 1.5 m above each other; or what
-            `FloorPlan` refuses.
+            which nothing leads to an exit; floors less than 1.5 m above each other; stairs in the
+            shaft of a lift; or what `FloorPlan` refuses.
 
     Attributes:
         levels: the levels, in the order given.
@@ -120,6 +121,7 @@ class Building:
         self._sheets = sheets_of(self.levels, flights, landings, self.lifts)
         check_joined(self.levels, self.stairs, self.lifts)
         check_headroom(self._sheets, flights)
+        check_shafts(self._sheets, flights, self.lifts)
         self._places = Places(self._sheets, flights, self._owners, self.lifts)
         self.footing = Footing(flights)
         self.floor_plan = self._plan()

@@ -1,4 +1,5 @@
-"""Headroom: floors and flights of a building that lie too close above each other."""
+"""Headroom: floors and flights of a building that lie too close above each other, or in the shaft
+of a lift."""
 
 from collections.abc import Iterable, Mapping
 from itertools import combinations
@@ -9,6 +10,7 @@ from shapely import Point
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.buildings.flights import Flight
+from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.places import height_on, place_on
 from mesa_mobility.buildings.sheets import Sheet
 from mesa_mobility.errors import FloorPlanError
@@ -55,6 +57,37 @@ def check_headroom(sheets: Mapping[str, Sheet], flights: Iterable[Flight]) -> No
         if spot is not None and between < HEADROOM_M - _ROUNDING:
             names = [f"{each.what} {each.name!r}" for each in (above, below)]
             raise _refusal(names[0], names[1], between, spot)
+
+
+def check_shafts(
+    sheets: Mapping[str, Sheet], flights: Iterable[Flight], lifts: Iterable[Lift]
+) -> None:
+    """No landing or flight must lie in the shaft of a lift.
+
+    Levels have no floor there, see ``sheets_of``. A shaft reaches from the lowest of its levels to
+    1.5 m above the highest.
+
+    Raises:
+        FloorPlanError: naming both, and the place.
+    """
+    heights = {sheet.level: sheet.elevation for sheet in sheets.values()}
+    landings, flights = [each for each in sheets.values() if each.level is None], tuple(flights)
+    for lift in lifts:
+        stops = [heights[number] for number in lift.numbers]
+        low, high = min(stops), max(stops) + HEADROOM_M
+        inside = {each.name: each.area for each in landings if low < each.elevation < high}
+        for flight in flights:
+            fall = (flight.top - flight.bottom) / flight.going
+            first = max((flight.top - high) / fall, 0.0)
+            last = min((flight.top - low) / fall, flight.going)
+            if last - first > _ROUNDING:
+                inside[f"{flight.what} {flight.name!r}"] = flight.part(first, last)
+        for name, area in inside.items():
+            spot = _shared(area, lift.shape)
+            if spot is not None:
+                raise FloorPlanError(
+                    f"lift {lift.name!r}: {name} lies in its shaft at ({spot.x:.2f}, {spot.y:.2f})"
+                )
 
 
 def _nearest(one: Flight, other: Flight) -> tuple[Point | None, float]:

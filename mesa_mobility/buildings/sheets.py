@@ -96,6 +96,7 @@ def sheets_of(
     for level in levels:
         own = _strips(sheet_of(level.number), flights, lifts)
         _check_level(level, own)
+        own += _shafts_past(level, levels, lifts)
         sheets.append(
             _sheet(sheet_of(level.number), level.number, level.elevation, level.area, own)
         )
@@ -215,18 +216,34 @@ def _strips(sheet: str, flights: Sequence[Flight], lifts: Sequence[Lift] = ()) -
             )
     for lift in lifts:
         if sheet in map(sheet_of, lift.numbers):
-            door, car = math.dist(*lift.door) / 2.0, lift.width / 2.0
-            end = DOORWAY + lift.depth
+            door = math.dist(*lift.door) / 2.0
             doorway = lift.part(-_INTO, DOORWAY + _INTO, door)
             found.append(
                 _Strip(
                     f"lift {lift.name!r}",
                     shapely.union(doorway, lift.car, grid_size=_GRID),
-                    lift.part(0.0, end + _WALL, car + _WALL),
+                    _shaft(lift),
                     lift.part(-_FREE_BEFORE_LIFT, 0.0, door),
                 )
             )
     return found
+
+
+def _shafts_past(level: Level, levels: Sequence[Level], lifts: Sequence[Lift]) -> list[_Strip]:
+    """The shafts of the lifts that pass a level and do not stop there: no floor is drawn there."""
+    heights = {each.number: each.elevation for each in levels}
+    found = []
+    for lift in lifts:
+        stops = [heights[number] for number in lift.numbers]
+        if min(stops) < level.elevation < max(stops) and level.number not in lift.numbers:
+            taken, nothing = _shaft(lift), Polygon()
+            found.append(_Strip(f"lift {lift.name!r}", nothing, taken, nothing))
+    return found
+
+
+def _shaft(lift: Lift) -> Polygon:
+    """What is taken from a floor for the car of a lift and its doorway."""
+    return lift.part(0.0, DOORWAY + lift.depth + _WALL, lift.width / 2.0 + _WALL)
 
 
 def _sheet(

@@ -1,8 +1,9 @@
 """Lifts of buildings: what is refused, and how they are written."""
 
 import pytest
+import shapely
 
-from mesa_mobility.buildings import Building, Level, Lift
+from mesa_mobility.buildings import Building, Level, Lift, Stairs
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Exit
 
@@ -10,6 +11,8 @@ HALL = "POLYGON ((0 0, 12 0, 12 6, 0 6, 0 0))"
 GROUND = Level(0, HALL, exits=[Exit("out", (0, 2), (0, 4))])
 FIRST = Level(1, HALL, 3.0)
 DOOR = ((8.0, 4.0), (8.9, 4.0))
+AWAY = ((1.0, 4.0), (1.9, 4.0))
+BESIDE = ((6.9, 4.0), (6.0, 4.0))
 
 
 def building(door=DOOR, levels=(GROUND, FIRST), **given):
@@ -78,3 +81,39 @@ def test_a_lift_needs_two_known_levels():
         Building([GROUND, FIRST], lifts=[Lift("car", [0, 7], DOOR)])
     with pytest.raises(FloorPlanError, match="escalator or lift 'car' is there twice"):
         Building([GROUND, FIRST], lifts=[Lift("car", [0, 1], DOOR)] * 2)
+
+
+def test_a_level_has_no_floor_in_the_shaft_of_a_lift_that_passes_it():
+    levels = [GROUND, FIRST, Level(2, HALL, 6.0)]
+    stairs = [
+        Stairs.dog_leg("low", 1, 0, ((3, 1.2), (3, 0)), risers=18, turn="left"),
+        Stairs.dog_leg("high", 2, 1, ((3, 5.9), (3, 4.7)), risers=18, turn="right"),
+    ]
+    express = Building(levels, stairs, lifts=[Lift("car", [0, 2], DOOR)])
+    # The car lies behind the door, from x = 7.9 to 9.0 and from y = 4.1 to 5.5.
+    on_first = express.places([(8.45, 4.8), (8.45, 4.05), (8.45, 3.95), (7.8, 4.8)], level=1)
+    assert express.floor_plan.contains(on_first).tolist() == [False, False, True, True]
+    assert express.floor_plan_of(1).exits[0].name.startswith("low")
+    # A column in the shaft is no obstacle to it.
+    column = Level(1, HALL, 3.0, obstacles=[shapely.box(8.2, 4.5, 8.6, 5.0)])
+    assert Building([GROUND, column, levels[2]], stairs, lifts=express.lifts)
+
+
+def test_a_landing_in_the_shaft_of_a_lift_that_passes_it():
+    levels = [GROUND, FIRST, Level(2, HALL, 6.0), Level(3, HALL, 9.0)]
+    # Flights of 8 * 0.29 m end at x = 7.42, the landing 1.2 m on; the car begins at x = 7.9.
+    high = Stairs.dog_leg("high", 2, 1, ((5.1, 5.4), (5.1, 4.2)), risers=18, turn="right")
+    with pytest.raises(FloorPlanError, match=r"lift 'car': landing of high lies in its shaft at"):
+        Building(levels, [high], lifts=[Lift("car", [0, 1, 3], DOOR), Lift("other", [0, 2], AWAY)])
+
+
+def test_stairs_in_the_shaft_of_a_lift_between_other_levels():
+    """They fall 12 m on 69 * 0.29 m from x = -4.5 on: 2 m above the lowest stop at x = 7.3."""
+    upper = Level(3, shapely.box(-10.0, 0.0, -4.0, 6.0), 9.0)
+    cellar = Level(-1, shapely.box(10.0, 0.0, 20.0, 6.0), -3.0, exits=[Exit("a", (20, 1), (20, 3))])
+    ledge = shapely.box(0.0, 4.0, 10.0, 6.0)
+    ground = Level(0, ledge, exits=[Exit("b", (0, 4.2), (0, 5.8))])
+    long = Stairs.straight("long", 3, -1, ((-4.5, 3.4), (-4.5, 2.0)), risers=70, tread=0.29)
+    levels, lift = [ground, cellar, Level(1, ledge, 3.0), upper], Lift("car", [0, 1], BESIDE)
+    with pytest.raises(FloorPlanError, match=r"lift 'car': stairs 'long' lies in its shaft at \(6"):
+        Building(levels, [long], lifts=[lift])

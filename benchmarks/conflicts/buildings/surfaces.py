@@ -7,7 +7,7 @@ building draws for the model.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -153,7 +153,8 @@ def surfaces_of(building: Building) -> list[Surface]:
             assert isinstance(way, Stairs)
             found.append(landing_of(way, *own))
     for level in building.levels:
-        found.append(_floor(level, slopes, building.lifts))
+        shafts = [each for each in building.lifts if _reaches(each, level.elevation, heights)]
+        found.append(_floor(level, slopes, shafts))
         found += [_car(lift, level) for lift in building.lifts if level.number in lift.numbers]
     for lift in building.lifts:
         served = [heights[number] for number in lift.numbers]
@@ -164,8 +165,14 @@ def surfaces_of(building: Building) -> list[Surface]:
     return found
 
 
+def _reaches(lift: Lift, height: float, heights: Mapping[int, float]) -> bool:
+    """Whether the shaft of a lift stops at a height or passes it."""
+    stops = [heights[number] for number in lift.numbers]
+    return min(stops) <= height <= max(stops)
+
+
 def _floor(level: Level, slopes: Sequence[Flight], lifts: Sequence[Lift]) -> Surface:
-    """The floor of a level without what is taken from it."""
+    """The floor of a level without what is taken from it; ``lifts`` are those that reach it."""
     name, joined = level_name(level.number), set[str]()
     taken = list(level.blocked)
     for each in slopes:
@@ -176,9 +183,9 @@ def _floor(level: Level, slopes: Sequence[Flight], lifts: Sequence[Lift]) -> Sur
         if name in (each.upper, each.lower):
             joined.add(each.name)
     for lift in lifts:
+        taken.append(_behind(lift, 0.0, DOORWAY + lift.depth + BESIDE,
+                             lift.width / 2.0 + BESIDE))  # fmt: skip
         if level.number in lift.numbers:
-            taken.append(_behind(lift, 0.0, DOORWAY + lift.depth + BESIDE,
-                                 lift.width / 2.0 + BESIDE))  # fmt: skip
             joined.add(f"{lift.name} at {name}")
     area = shapely.difference(level.area, shapely.union_all(taken), grid_size=1e-9)
     # On this grid a spike of the outline may become a line.

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.lifts.rides import Rides
-from mesa_mobility.crowd.lifts.spots import free_spot
+from mesa_mobility.crowd.lifts.spots import free_spot, swapped_spots
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.environment import Environment
@@ -251,6 +251,7 @@ class Lifts(Saved):
         there = there[self._rides[there] == lift]
         ours = inside[self._rides[inside] == lift]
         points = np.column_stack([crowd.x[ours], crowd.y[ours]])
+        self._spot[ours] = swapped_spots(shaft, stop, points, crowd.core[ours], self._spot[ours])
         outside = ours[~shaft.in_car(stop, points, CLEAR * crowd.core[ours])]
         waited = frame - self._since[lift]
         if len(outside) and waited < GIVES_UP:

@@ -12,6 +12,7 @@ from mesa_mobility.crowd.hooks import World
 from mesa_mobility.crowd.lifts.escalators import Escalators
 from mesa_mobility.crowd.lifts.lifts import NOBODY, Lifts
 from mesa_mobility.crowd.lifts.refuges import Refuges
+from mesa_mobility.crowd.lifts.spots import THERE
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.visits import slow_down
@@ -29,9 +30,6 @@ it to lead through that door."""
 
 APART = 0.15
 """Metres that somebody who waits takes up around their body."""
-
-THERE = 0.15
-"""Metres from their spot at which people stop."""
 
 
 class RideLifts(Tactic):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mesa_mobility.crowd.lifts.spots import APART, free_spot
+from mesa_mobility.crowd.lifts.spots import APART, free_spot, swapped_spots
 from mesa_mobility.floorplan import Shaft, Stop
 
 NOBODY = np.empty((0, 2)), np.empty(0)
@@ -43,3 +43,31 @@ def test_a_wheelchair_fits_alone():
 @pytest.mark.parametrize(("width", "depth"), [(0.6, 1.4), (1.1, 0.6)])
 def test_a_body_larger_than_the_car_fits_nowhere(width, depth):
     assert free_spot(shaft(width, depth), 0, 0.35, *NOBODY) is None
+
+
+def test_who_comes_in_first_gets_the_spot_behind():
+    cores, spots = np.array([0.2, 0.2]), np.array([(0.45, 1.15), (0.45, 0.6)])
+    # The second stands at their spot, before that of the first, who is still outside.
+    points = np.array([(0.45, -1.0), (0.45, 0.65)])
+    found = swapped_spots(shaft(), 0, points, cores, spots)
+    # 1.4 m deep, and as far from the wall as the body with its distance.
+    assert found[1, 1] == pytest.approx(0.05 + 1.4 - 0.2 - APART)
+    assert found[0, 1] <= found[1, 1]
+    assert np.hypot(*(found[0] - found[1])) >= 0.4 + APART - 1e-9
+
+
+def test_spots_stay_where_nobody_is_in_the_way():
+    cores, spots = np.array([0.2, 0.2]), np.array([(0.45, 1.15), (0.45, 0.6)])
+    # In the order of their spots; not there yet; and side by side, in any order.
+    for points, given in (
+        ([(0.45, 0.8), (0.45, -1.0)], spots),
+        ([(0.45, -1.0), (0.45, 0.1)], spots),
+        ([(0.45, -1.0), (0.7, 1.1)], np.array([(0.2, 1.15), (0.7, 1.1)])),
+    ):
+        assert swapped_spots(shaft(), 0, np.array(points), cores, given) is given
+
+
+def test_spots_stay_where_others_do_not_fit():
+    cores, spots = np.array([0.35, 0.35]), np.array([(0.45, 1.0), (0.45, 0.4)])
+    points = np.array([(0.45, -1.0), (0.45, 0.45)])
+    assert swapped_spots(shaft(), 0, points, cores, spots) is spots
