@@ -175,3 +175,18 @@ def test_places_on_copied_parts_belong_to_the_other_sheet():
     )
     assert found[:, 0].tolist() == [0.0, 50.0, -50.0, 0.0, 0.0, 0.0]
     assert (found[:, 1] == 0.0).all()
+
+
+@pytest.mark.parametrize("width", [0.9, 2.4])
+@pytest.mark.parametrize("place", [(1.0, 0.05), (2.0, -0.2), (4.5, 0.2), (5.8, -0.1)])
+def test_people_cross_gates_of_seams_on_the_straight_line_to_where_they_go_next(width, place):
+    """Before a seam they head as on one floor: there for the exit, here for the gate at 7.75 m."""
+    (whole,), (cut,) = (
+        Router(plan, clearance=0.2).targets([place], [0]).points
+        for plan in (room_with_corridor(width), cut_corridor(width))
+    )
+    steps = np.array([whole, cut]) - place
+    assert whole[0] > 12.0
+    assert 7.75 < cut[0] < 10.0
+    aside = steps[1] @ (steps[0, 1], -steps[0, 0]) / np.hypot(*steps[0])
+    assert abs(aside) < 0.01

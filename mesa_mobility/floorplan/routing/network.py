@@ -23,12 +23,20 @@ _BESIDE = 1.5
 """A corner of a right angle stands 1.41 clearances from the edge of the wall."""
 
 
-def ways_of(plan: Floor, nodes: Nodes, walls: int, clearance: float, beyond: float) -> Ways:
+def ways_of(
+    plan: Floor,
+    nodes: Nodes,
+    links: tuple[NDArray[np.int64], NDArray[np.int64]],
+    walls: int,
+    clearance: float,
+    beyond: float,
+) -> Ways:
     """The route graph's nodes and openings, as arrays for compiled functions.
 
     Args:
         plan: the floor plan.
         nodes: the nodes of the graph.
+        links: (k,) nodes from which routes lead to another sheet, and (k,) those to which.
         walls: number of walls of the plan, which the lines of open exits follow in the sight.
         clearance: distance in metres that routes keep from walls.
         beyond: how far behind a gate or exit the target lies, metres.
@@ -56,9 +64,21 @@ def ways_of(plan: Floor, nodes: Nodes, walls: int, clearance: float, beyond: flo
         passable,
         curtains,
         _flight_corners(plan, nodes, clearance),
+        _linked(nodes, *links),
         VIEW_SHARE * clearance,
         beyond,
     )
+
+
+def _linked(
+    nodes: Nodes, leaving: NDArray[np.int64], arriving: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """(nodes,) the node of the same place on another sheet; -1 for none, and in doors of lifts,
+    behind which people turn round."""
+    linked = np.full(len(nodes.kind), -1, dtype=np.int64)
+    onward = (nodes.normal[leaving] * nodes.normal[arriving]).sum(axis=1) > 0.0
+    linked[leaving[onward]] = arriving[onward]
+    return linked
 
 
 def _flight_corners(plan: Floor, nodes: Nodes, clearance: float) -> NDArray[np.int64]:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import inlined, internal
-from mesa_mobility.floorplan.routing.route_graph import Ways, in_view
+from mesa_mobility.floorplan.routing.route_graph import Ways, in_view, side
 from mesa_mobility.floorplan.routing.route_nodes import CORNER
 from mesa_mobility.floorplan.walls.sight import Sight
 
@@ -42,6 +42,40 @@ def place(
         if _serves(sight, ways, (x, y), node, after, (ax, ay), ways.view_clearance, own):
             return ax, ay, away
     return qx, qy, away
+
+
+@internal()
+def straight_on(
+    sight: Sight,
+    ways: Ways,
+    person: tuple[float, float],
+    node: int,
+    point: tuple[float, float],
+    after: NDArray[np.int64],
+    own: float,
+) -> tuple[float, float]:
+    """Where people cross a gate from which the route goes on on another sheet.
+
+    It is on the straight line to where they go next, as if both sheets were one floor. A `point` in
+    the gate is taken where that line is not free, and at all other openings.
+    """
+    (x, y), other = person, ways.linked[node]
+    if other < 0 or after[other] < 0:
+        return point
+    then = after[other]
+    dx, dy = ways.xy[other, 0] - ways.xy[node, 0], ways.xy[other, 1] - ways.xy[node, 1]
+    rx, ry, _ = place(sight, ways, point[0] + dx, point[1] + dy, then, after[then], np.inf)
+    before, behind = -side(ways, node, x, y), side(ways, other, rx, ry)
+    if before <= 0.0 or behind <= 0.0:
+        return point
+    share = before / (before + behind)
+    ends = ways.ends[ways.opening[node]]
+    qx, qy = nearest(ends, x + share * (rx - dx - x), y + share * (ry - dy - y))
+    if in_view(sight, ways, x, y, node, qx, qy, ways.view_clearance, own) and in_view(
+        sight, ways, qx + dx, qy + dy, then, rx, ry, ways.view_clearance, np.inf
+    ):
+        return qx, qy
+    return point
 
 
 @internal()

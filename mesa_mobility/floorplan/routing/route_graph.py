@@ -21,7 +21,8 @@ class Ways(NamedTuple):
     (openings, 4) its line, `ends` (openings, 4) the line from its first to its last node,
     `passable` (openings,) whether it has nodes, `curtains` (openings,) its number
     among the walls of the sight, -1 for gates. `flight_corners` are the corners beside flights of
-    stairs, in order.
+    stairs, in order. `linked` (nodes,) are the nodes of gates of seams at which routes go on on
+    another sheet, -1 for all others.
     """
 
     kind: NDArray[np.int64]
@@ -34,6 +35,7 @@ class Ways(NamedTuple):
     passable: NDArray[np.bool_]
     curtains: NDArray[np.int64]
     flight_corners: NDArray[np.int64]
+    linked: NDArray[np.int64]
     view_clearance: float
     beyond: float
 

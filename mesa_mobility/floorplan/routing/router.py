@@ -285,14 +285,14 @@ class Router:
         points = [each for each in self._destinations if is_point(each)]
         with one_line("routes"):
             nodes = with_points(find_nodes(plan, self._sight, self._clearance), points)
-        self._ways = ways_of(plan, nodes, len(walls), self._clearance, self._beyond)
+        self._leaving, self._arriving, lengths = sheet_links(self._links, plan.openings(), nodes)
+        links = self._leaving, self._arriving
+        self._ways = ways_of(plan, nodes, links, len(walls), self._clearance, self._beyond)
         self._edges = edges_in_view(self._sight, self._ways, EDGE_SHARE * self._clearance)
         step = nodes.xy[self._edges[:, 1]] - nodes.xy[self._edges[:, 0]]
         self._edge_lengths = np.hypot(step[:, 0], step[:, 1])
-        self._leaving, self._arriving, lengths = sheet_links(self._links, plan.openings(), nodes)
         if len(lengths):
-            links = np.column_stack([self._leaving, self._arriving])
-            self._edges = np.concatenate([self._edges, links])
+            self._edges = np.concatenate([self._edges, np.column_stack(links)])
             self._edge_lengths = np.concatenate([self._edge_lengths, lengths])
         self._nodes, self._graph = nodes, None
         shape = (len(nodes.kind), len(nodes.kind))

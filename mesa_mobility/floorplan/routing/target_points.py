@@ -5,7 +5,12 @@ from numpy.typing import NDArray
 
 from mesa_mobility.compiled.decorators import inlined, internal
 from mesa_mobility.floorplan.floor.geometry import segments_cross
-from mesa_mobility.floorplan.routing.opening_points import nearest, opening_behind, place
+from mesa_mobility.floorplan.routing.opening_points import (
+    nearest,
+    opening_behind,
+    place,
+    straight_on,
+)
 from mesa_mobility.floorplan.routing.route_graph import IN_LINE, Ways, in_view, side
 from mesa_mobility.floorplan.routing.route_nodes import CORNER, EXIT, GATE
 from mesa_mobility.floorplan.walls.line_of_sight import clear_line, free_length
@@ -60,6 +65,7 @@ def aim_at(
         leaves = ways.kind[node] == EXIT
         if after[node] < 0:  # the end of the route, or of its part on this sheet
             length = min(length, away + to_go[node])
+            qx, qy = straight_on(sight, ways, (x, y), node, (qx, qy), after, own)
         px, py = _beyond(
             sight, ways, x, y, qx, qy, ways.normal[node, 0], ways.normal[node, 1], leaves
         )
