@@ -31,6 +31,7 @@ FRAME = (1.6, 1.4)
 ROW = 0.75
 LARGEST = (11.0, 9.5)
 _LEAST_ROW = 1.2
+MARGIN = 0.02
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,10 @@ def _from_the_top(building: Building) -> list[Level]:
 
 
 def panels_of(
-    storeys: Sequence[Storey], times: int = 1, largest: tuple[float, float] = LARGEST
+    storeys: Sequence[Storey],
+    times: int = 1,
+    largest: tuple[float, float] = LARGEST,
+    margin: float = MARGIN,
 ) -> tuple[Figure, list[tuple[Axes, Storey]]]:
     """A figure with a panel for each storey, at each of some times, and what each panel shows.
 
@@ -105,12 +109,15 @@ def panels_of(
         storeys: what to show.
         times: how many.
         largest: width and height of the figure, inches.
+        margin: room around a floor, as a share of its length.
     """
     count = len(storeys) * times
     columns = min(2, count) if len(storeys) == 1 or times == 1 else len(storeys)
-    bounds = shapely.total_bounds([each.plan.walkable for each in storeys])
+    x0, y0, x1, y1 = shapely.total_bounds([each.plan.walkable for each in storeys])
+    around = margin * max(x1 - x0, y1 - y0)
+    bounds = (x0 - around, y0 - around, x1 + around, y1 + around)
     rows = -(-count // columns)
-    figure, axes = floor_figure(tuple(bounds), rows=rows, columns=columns, largest=largest)
+    figure, axes = floor_figure(bounds, rows=rows, columns=columns, largest=largest)
     for panel in axes[count:]:
         panel.set_axis_off()
     return figure, list(zip(axes, list(storeys) * times, strict=False))
@@ -147,7 +154,7 @@ def floor_figure(
     """A figure of panels as large as the plan's shape allows, and its axes in reading order.
 
     Args:
-        bounds: of the plan: least x and y, greatest x and y, metres.
+        bounds: of what a panel shows: least x and y, greatest x and y, metres.
         rows: of panels.
         columns: of panels.
         largest: width and height of the figure, inches.
@@ -229,7 +236,7 @@ def draw_floor(
             )
             handles.append(Line2D([], [], color=colour, linewidth=3.5, label=label))
     x_min, y_min, x_max, y_max = plan.bounds
-    margin = 0.02 * max(x_max - x_min, y_max - y_min)
+    margin = MARGIN * max(x_max - x_min, y_max - y_min)
     axes.set_xlim(x_min - margin, x_max + margin)
     axes.set_ylim(y_min - margin, y_max + margin)
     axes.set_aspect("equal")

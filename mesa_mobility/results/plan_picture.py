@@ -46,7 +46,7 @@ def plan_figure(
         largest: width and height of the figure, inches.
         labels: what stands beside openings instead of their names, by name.
     """
-    figure, panels = panels_of(storeys_alone(plan), largest=largest)
+    figure, panels = panels_of(storeys_alone(plan), largest=largest, margin=_MARGIN)
     handles: dict[str, Line2D | Patch] = {}
     for axes, storey in panels:
         for each in draw_floor(axes, storey.plan, storey.stairs, storey.refuges):
@@ -125,7 +125,7 @@ def _write(axes: Axes, spot: shapely.Point, said: str, colour: str, size: float)
         color=colour,
         fontsize=size,
         zorder=6,
-        bbox={"facecolor": "white", "alpha": 0.6, "linewidth": 0, "pad": 0.3},
+        bbox={"facecolor": "white", "alpha": 0.85, "linewidth": 0, "pad": 0.3},
     )
 
 

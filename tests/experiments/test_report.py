@@ -139,6 +139,26 @@ def test_plan_people_doors_and_maps_of_a_crowd(tmp_path):
     assert "Level of service at the greatest density of each cell" in text
 
 
+@pytest.mark.thorough
+def test_people_by_type(tmp_path):
+    experiment = Experiment(
+        "doorway",
+        {"door_width": [1.0]},
+        fixed={"pedestrians": 6, "population": "able_bodied: 0.5, child: 0.5"},
+        replications=3,
+        max_seconds=60,
+    )
+    store, text = page_of(tmp_path, experiment)
+    part = text.split("People by type: means over the runs")[1].split("</table>")[0]
+    rows = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in part.split("<tr>")[2:]]
+    runs = store.frame(series=True).types
+    assert [row[1] for row in rows] == ["able bodied", "child"]
+    for number, row in enumerate(rows):
+        own = [each for run in runs for each in run if each["type"] == number]
+        assert row[2] == f"{np.mean([each['people'] for each in own]):.4g}"
+        assert row[4] == f"{np.mean([each['mean_s'] for each in own]):.4g}"
+
+
 def test_parameters_have_the_units_that_the_model_says():
     experiment = Experiment(
         "doorway",
@@ -152,6 +172,13 @@ def test_parameters_have_the_units_that_the_model_says():
         "headway.time": "headway time (s)",
         "pedestrians": "occupants",
     }
+
+
+def test_runs_that_end_with_people_inside_are_counted(tmp_path):
+    experiment = Experiment("doorway", {"pedestrians": [2]}, replications=2, max_seconds=1)
+    _, text = page_of(tmp_path, experiment)
+    assert '<td>done</td><td class="number">2</td>' in text
+    assert '<td>done, but with people inside at the end</td><td class="number">2</td>' in text
 
 
 def test_single_runs_are_drawn_near_their_value():

@@ -65,6 +65,9 @@ def picture_of(
             groups = [observed(of[of[along] == x], figure) for x in places]
             _draw(axes, places, groups, step, figure, said)
         axes.set_xlabel(words_of(along, labels))
+        # All places, also those without a value to draw, with room for the runs beside them.
+        first, last = done[along].min(), done[along].max()
+        axes.set_xlim(first - 0.3 * step, last + 0.5 * step)
     else:
         points = [of for _, of in done.groupby("point", sort=False)]
         _draw(axes, np.arange(len(points)), [observed(of, figure) for of in points], 1.0, figure)
@@ -75,7 +78,7 @@ def picture_of(
             axes.plot([], [], marker, color="#555555", fillstyle="none", label=said)
         axes.set_title(f"not reached in {lacking} of {len(done)} runs", fontsize=9)
     if axes.get_legend_handles_labels()[1]:
-        axes.legend(frameon=False, fontsize=8)
+        drawn.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=8)
     axes.set_ylabel(words_of(figure, labels))
     return picture(drawn)
 

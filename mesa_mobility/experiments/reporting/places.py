@@ -1,4 +1,4 @@
-"""Doors and clearing times of an experiment: means over the runs, where they have kept them."""
+"""Doors, clearing times and types of people in an experiment: means over the runs."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesa_mobility.experiments.observed import observed
+from mesa_mobility.experiments.reporting.basis import model_again
 from mesa_mobility.experiments.reporting.estimates import MOST_ROWS, known_of
 from mesa_mobility.experiments.reporting.labels import labels_of
 from mesa_mobility.experiments.reporting.pictures import value_text
+from mesa_mobility.experiments.storing.rows import FAILED
+from mesa_mobility.reports.run.texts import in_words
 from mesa_mobility.reports.words import words_of
 
 if TYPE_CHECKING:
@@ -57,6 +60,61 @@ def add_doors(page: Page, experiment: Any, frame: pd.DataFrame) -> None:
         "In brackets: 95 % intervals of the means. No mean is given where a run did not reach the "
         "share.",
     )
+
+
+def add_types(page: Page, experiment: Any, frame: pd.DataFrame) -> None:
+    """Add people and times inside by type of people, at each point of the design."""
+    if "types" not in frame:
+        return
+    runs = [list(each) if each is not None else [] for each in frame["types"]]
+    numbers = sorted({int(each["type"]) for run in runs for each in run})
+    if len(numbers) < 2:
+        return
+    called = _called(experiment, frame, numbers)
+    rows = []
+    for _, of in frame.groupby("point", sort=False):
+        point = [value_text(of[name].iloc[0]) for name in experiment.design.column_types()]
+        for number in numbers:
+            found = [
+                {str(key): value for key, value in each.items()}
+                for run, status in zip(of["types"], of["status"], strict=True)
+                if status != FAILED and run is not None
+                for each in run
+                if each["type"] == number
+            ]
+            said = []
+            for key in ("people", "left", "mean_s", "longest_s"):
+                values = [each[key] for each in found]
+                known = np.array([np.inf if v is None else v for v in values], dtype=np.float64)
+                known[np.isnan(known)] = np.inf
+                said.append(str(known_of("mean", "mean_time_inside_s", known)))
+            rows.append([*point, called[number], *said])
+    page.table(
+        "People by type: means over the runs, by point of the design",
+        [
+            *_named(experiment),
+            "type",
+            "people",
+            "left",
+            "mean time inside (s)",
+            "longest time inside (s)",
+        ],
+        rows[:MOST_ROWS],
+        "In brackets: 95 % intervals of the means. No mean is given where somebody of the type was "
+        "still inside at the end of a run.",
+    )
+
+
+def _called(experiment: Any, frame: pd.DataFrame, numbers: list[int]) -> dict[int, str]:
+    """What types of people are called; their numbers where the design varies them."""
+    model = None
+    if "population" not in experiment.design.column_types():
+        model = model_again(experiment, frame)
+    kinds = [each.name for each in getattr(model, "pedestrian_types", ())]
+    return {
+        number: in_words(kinds[number]) if number < len(kinds) else f"type {number + 1}"
+        for number in numbers
+    }
 
 
 def _named(experiment: Any) -> list[str]:

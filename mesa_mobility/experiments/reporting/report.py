@@ -24,11 +24,12 @@ from mesa_mobility.experiments.reporting.evidence import add_failures, add_input
 from mesa_mobility.experiments.reporting.labels import labels_of
 from mesa_mobility.experiments.reporting.maps import add_maps
 from mesa_mobility.experiments.reporting.pictures import picture_of, spread_of, value_text
-from mesa_mobility.experiments.reporting.places import add_doors
-from mesa_mobility.experiments.storing.rows import SERIES, STATUSES
+from mesa_mobility.experiments.reporting.places import add_doors, add_types
+from mesa_mobility.experiments.storing.rows import DONE, SERIES, STATUSES
 from mesa_mobility.experiments.storing.shards import RUN_COLUMNS
 from mesa_mobility.reports.html import Page
 from mesa_mobility.reports.run.evidence import add_definitions
+from mesa_mobility.reports.run.texts import count
 from mesa_mobility.reports.words import with_value, words_of
 
 if TYPE_CHECKING:
@@ -86,6 +87,7 @@ def write_report(store: Store, path: str | os.PathLike[str] | None = None) -> Pa
         add_estimates(page, experiment, frame, figure, label)
     add_comparison(page, store, frame, shown)
     add_doors(page, experiment, frame)
+    add_types(page, experiment, frame)
     add_maps(page, store, frame, shown)
     page.section("Spread over the seeds and convergence", "convergence")
     for figure in shown:
@@ -130,6 +132,8 @@ def _summary(page: Page, store: Store, frame: pd.DataFrame, shown: list[str]) ->
     status, experiment = store.status(), store.experiment()
     page.section("Summary", "summary")
     labels = labels_of(experiment)
+    left = frame["left_inside"] if "left_inside" in frame else np.zeros(len(frame))
+    inside = int(((frame["status"] == DONE) & (left > 0)).sum())
     points = [of for _, of in frame.groupby("point", sort=False)]
     names = [n for n in experiment.design.column_types() if frame[n].nunique() > 1]
     rows, few = [], len(points) <= _MOST_COLUMNS
@@ -158,10 +162,12 @@ def _summary(page: Page, store: Store, frame: pd.DataFrame, shown: list[str]) ->
             ["asked for", _count(status["asked"])],
             ["missing", _count(status["missing"])],
             *[[name.replace("_", " "), status[name]] for name in STATUSES],
+            *([["done, but with people inside at the end", inside]] if inside else []),
         ],
-        "“Stalled”: nobody made progress any more, with people inside. “Blocked”: the run ended at "
-        "its longest time, with people inside who block each other. “Timed out”: it took longer to "
-        "compute than allowed. These runs count as later than all others (censored). “Failed”: an "
+        "“Done”: everybody had left, or the run ended at its longest time. “Stalled”: nobody made "
+        "progress any more, with people inside. “Blocked”: the run ended at its longest time, with "
+        "people inside who block each other. “Timed out”: it took longer to compute than allowed. "
+        "Times that a run did not reach count as later than all others (censored). “Failed”: an "
         "error ended it; it counts nowhere.",
     )
     if status["missing"]:
@@ -173,9 +179,10 @@ def _range_of(means: Sequence[Estimate]) -> str:
     known = [each.value for each in means if each.value is not None]
     if not known:
         return "no point has a mean"
-    said = f"{min(known):.4g} to {max(known):.4g} ({len(known)} points)"
+    said = f"{min(known):.4g} to {max(known):.4g}" if len(known) > 1 else f"{known[0]:.4g}"
+    said += f" ({count(len(known), 'point')})"
     lacking = len(means) - len(known)
-    return f"{said}; {lacking} points have no mean" if lacking else said
+    return f"{said}; no mean of {count(lacking, 'point')}" if lacking else said
 
 
 def _count(value: int | None) -> str:
