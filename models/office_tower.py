@@ -50,8 +50,8 @@ class OfficeTower(PedestrianModel):
     1.8 m. Only people who do not use stairs take the lift.
 
     Args:
-        pedestrians: people, as many on each storey.
-        storeys: of the tower, the ground floor included.
+        pedestrians: people in all, spread evenly over the storeys.
+        storeys: their number, the ground floor included.
         population: the types of people, as "mixed" or "able_bodied: 0.9, child: 0.1".
         pre_movement: seconds before people set off, or their distribution.
         preset: "default" or "paper".

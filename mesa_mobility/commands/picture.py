@@ -36,7 +36,7 @@ def draw_plan(
     Raises:
         FloorPlanError: the file cannot be written.
     """
-    from mesa_mobility.results.floor import plan_figure
+    from mesa_mobility.results.plan_picture import plan_figure
 
     check_picture(path)
     figure = plan_figure(plan)

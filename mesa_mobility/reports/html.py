@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import io
 import os
+import re
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -20,8 +22,14 @@ if TYPE_CHECKING:
 
 _MARKS = {"pass": "pass", "FAIL": "fail"}
 
-_SHORT = 15
+_SHORT = 10
 """Rows of a table that is not broken over two sheets of paper."""
+
+_UNIT = re.compile(r"\([^()]*(?:\([^()]*\)[^()]*)*\)$")
+"""A unit in brackets at the end of a heading; a unit itself may have brackets."""
+
+_LONG = re.compile(r"[0-9a-f]{40}|\S{60}")
+"""Texts that may be broken anywhere, such as digests."""
 
 _TO_SIGN = ("Prepared by", "Checked by", "Approved by")
 
@@ -79,6 +87,10 @@ class Page:
         """A paragraph."""
         self._parts.append(f"<p>{escape(text)}</p>")
 
+    def lead_in(self, text: str) -> None:
+        """A paragraph that stays with what follows."""
+        self._parts.append(f'<p class="lead-in">{escape(text)}</p>')
+
     def notice(self, text: str) -> None:
         """A paragraph that the reader must not miss."""
         self._parts.append(f'<p class="notice">{escape(text)}</p>')
@@ -94,16 +106,17 @@ class Page:
 
         Args:
             caption: what it shows.
-            columns: names of the columns, with units.
+            columns: names of the columns, with units; no row of headings if all are empty.
             rows: their values; a `Link` leads to a section.
             note: a paragraph below.
         """
         self._tables += 1
         right = [_is_number([row[k] for row in rows]) for k in range(len(columns))]
         head = "".join(
-            f"<th{_class(is_right)}>{escape(name)}</th>"
+            f"<th{_class(is_right)}>{_heading(name)}</th>"
             for name, is_right in zip(columns, right, strict=True)
         )
+        head = f"<thead><tr>{head}</tr></thead>" if any(columns) else ""
         body = "".join(
             "<tr>"
             + "".join(
@@ -116,8 +129,7 @@ class Page:
         short = ' class="short"' if len(rows) <= _SHORT else ""
         above = f"<b>Table {self._tables}.</b> {escape(_begun(caption))}"
         self._parts.append(
-            f"<table{short}><caption>{above}</caption>"
-            f"<thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+            f"<table{short}><caption>{above}</caption>{head}<tbody>{body}</tbody></table>"
         )
         if note:
             self._parts.append(f'<p class="note">{escape(note)}</p>')
@@ -139,6 +151,15 @@ class Page:
     def code(self, text: str) -> None:
         """Text as a computer reads it, such as a command."""
         self._parts.append(f"<pre>{escape(text)}</pre>")
+
+    def command(self, words: Sequence[str]) -> None:
+        """A command of the shell; its lines are broken between words alone.
+
+        Args:
+            words: the command and its arguments, without quotes.
+        """
+        parts = " ".join(f"<span>{escape(shlex.quote(each))}</span>" for each in words)
+        self._parts.append(f'<pre class="command">{parts}</pre>')
 
     def json(self, values: Mapping[str, Any]) -> None:
         """Values as JSON."""
@@ -200,11 +221,22 @@ def _class(is_right: bool) -> str:
     return ' class="number"' if is_right else ""
 
 
+def _heading(name: str) -> str:
+    """The name of a column; its unit stays in one piece."""
+    unit = _UNIT.search(name)
+    if unit is None:
+        return escape(name)
+    before = escape(name[: unit.start()])
+    return f'{before}<span class="unit">{escape(unit.group())}</span>'
+
+
 def _cell(value: Any) -> str:
     if isinstance(value, Link):
         return _anchor(value.text, value.to)
     text = "-" if value is None else escape(str(value))
-    return f'<span class="{_MARKS[text]}">{text}</span>' if text in _MARKS else text
+    if text in _MARKS:
+        return f'<span class="{_MARKS[text]}">{text}</span>'
+    return f'<span class="long">{text}</span>' if _LONG.search(text) else text
 
 
 def _is_number(values: Sequence[Any]) -> bool:

@@ -38,7 +38,7 @@ def browser_program(purpose: str = "write PDF") -> str:
 
 
 def write_pdf(page: str | os.PathLike[str], path: str | os.PathLike[str]) -> None:
-    """Print a page of HTML on A4, as its style says.
+    """Print a page of HTML on A4, as its style says, with its headings as bookmarks.
 
     Args:
         page: file of the page.
@@ -60,6 +60,7 @@ def write_pdf(page: str | os.PathLike[str], path: str | os.PathLike[str]) -> Non
             "--no-first-run",
             f"--user-data-dir={profile}",
             "--no-pdf-header-footer",
+            "--generate-pdf-document-outline",
             f"--print-to-pdf={temporary.absolute()}",
             Path(page).absolute().as_uri(),
         ]

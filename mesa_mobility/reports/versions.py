@@ -56,5 +56,6 @@ def add_versions(
         note: a paragraph below.
     """
     rows = [[name, number] for name, number in found.items()]
-    rows += [[name, f"sha256 {digest}"] for name, digest in inputs.items()]
-    page.table("Versions and inputs", ["what", "which"], [*rows, ["machine", on]], note)
+    rows.append(["machine", on])
+    rows += [[name.replace("_", " "), digest] for name, digest in inputs.items()]
+    page.table("Versions, and digests (sha256) of inputs", ["what", "which"], rows, note)

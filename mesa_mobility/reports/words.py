@@ -23,8 +23,8 @@ WORDS = {
     "wall_s": "time to compute a run (s)",
     "cpu_s": "processor time of a run (s)",
     "decisions": "decisions taken",
-    "fallback_time_share": "share of the time in the fallback",
-    "fallback_decision_share": "share of the decisions by the fallback",
+    "fallback_time_share": "share of the time in the fallback movement",
+    "fallback_decision_share": "share of the decisions for the fallback movement",
 }
 """Of the columns that runs have."""
 
@@ -64,3 +64,9 @@ def words_of(name: str, labels: Mapping[str, str] | None = None) -> str:
         if name.endswith(end) and len(name) > len(end):
             return f"{name[: -len(end)].replace('_', ' ')} ({unit})"
     return name.replace("_", " ")
+
+
+def with_value(label: str, value: str) -> str:
+    """A label with its value: "door width 0.8 m" of "door width (m)"."""
+    name, bracket, unit = label.removesuffix(")").rpartition(" (")
+    return f"{name} {value} {unit}" if bracket and label.endswith(")") else f"{label} {value}"

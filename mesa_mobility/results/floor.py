@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -27,7 +27,11 @@ OUTSIDE, OBSTACLE, WALL, EXIT, DOOR = "#f2f2f0", "#b5b5b5", "#2b2b2b", "#00a03c"
 ZONE, STAIRS, REFUGE = "#fbe9c8", "#e3def2", "#d3ecdb"
 # Room on the page for labels, colour bar and legend, inches.
 FRAME = (1.6, 1.4)
+# More of it for each further row of panels: title, numbers and name of the axis.
+ROW = 0.75
 LARGEST = (11.0, 9.5)
+_LEAST_ROW = 1.2
+MARGIN = 0.02
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,7 @@ class Storey:
         refuges: its refuges.
         rows: (n,) bool; rows of the run of people on it, and on the stairs up from it.
         title: of the panel.
+        named: the polygons of ``stairs``, each with the name of the stairs or lift.
     """
 
     plan: FloorPlan
@@ -47,6 +52,7 @@ class Storey:
     refuges: tuple[Refuge, ...]
     rows: NDArray[np.bool_]
     title: str = ""
+    named: tuple[tuple[str, shapely.Polygon], ...] = ()
 
 
 def storeys_of(tracks: Tracks, plan: FloorPlan | Building) -> list[Storey]:
@@ -69,16 +75,20 @@ def storeys_alone(plan: FloorPlan | Building) -> list[Storey]:
     nobody = np.zeros(0, dtype=np.bool_)
     if isinstance(plan, FloorPlan):
         return [Storey(plan, (), (), nobody)]
-    return [
-        Storey(
-            plan.floor_plan_of(level.number),
-            tuple(_stairs_of(plan, level.number)),
-            tuple(level.refuges),
-            nobody,
-            level.name or f"level {level.number}",
+    found = []
+    for level in _from_the_top(plan):
+        named = tuple(_stairs_of(plan, level.number))
+        found.append(
+            Storey(
+                plan.floor_plan_of(level.number),
+                tuple(shape for _, shape in named),
+                tuple(level.refuges),
+                nobody,
+                f"level {level.number}" + (f" ({level.name})" if level.name else ""),
+                named,
+            )
         )
-        for level in _from_the_top(plan)
-    ]
+    return found
 
 
 def _from_the_top(building: Building) -> list[Level]:
@@ -86,7 +96,10 @@ def _from_the_top(building: Building) -> list[Level]:
 
 
 def panels_of(
-    storeys: Sequence[Storey], times: int = 1, largest: tuple[float, float] = LARGEST
+    storeys: Sequence[Storey],
+    times: int = 1,
+    largest: tuple[float, float] = LARGEST,
+    margin: float = MARGIN,
 ) -> tuple[Figure, list[tuple[Axes, Storey]]]:
     """A figure with a panel for each storey, at each of some times, and what each panel shows.
 
@@ -96,87 +109,39 @@ def panels_of(
         storeys: what to show.
         times: how many.
         largest: width and height of the figure, inches.
+        margin: room around a floor, as a share of its length.
     """
     count = len(storeys) * times
     columns = min(2, count) if len(storeys) == 1 or times == 1 else len(storeys)
-    bounds = shapely.total_bounds([each.plan.walkable for each in storeys])
+    x0, y0, x1, y1 = shapely.total_bounds([each.plan.walkable for each in storeys])
+    around = margin * max(x1 - x0, y1 - y0)
+    bounds = (x0 - around, y0 - around, x1 + around, y1 + around)
     rows = -(-count // columns)
-    figure, axes = floor_figure(tuple(bounds), rows=rows, columns=columns, largest=largest)
+    figure, axes = floor_figure(bounds, rows=rows, columns=columns, largest=largest)
     for panel in axes[count:]:
         panel.set_axis_off()
     return figure, list(zip(axes, list(storeys) * times, strict=False))
 
 
-def plan_figure(
-    plan: FloorPlan | Building,
-    largest: tuple[float, float] = LARGEST,
-    labels: Mapping[str, str] | None = None,
-) -> Figure:
-    """A floor plan, or a panel for each level, with the names of doors, exits and rooms.
-
-    Args:
-        plan: the floor plan or the building.
-        largest: width and height of the figure, inches.
-        labels: what stands beside openings instead of their names, by name.
-    """
-    figure, panels = panels_of(storeys_alone(plan), largest=largest)
-    handles: dict[str, Line2D | Patch] = {}
-    for axes, storey in panels:
-        for each in draw_floor(axes, storey.plan, storey.stairs, storey.refuges):
-            handles.setdefault(str(each.get_label()), each)
-        for openings, colour in (
-            (storey.plan.open_exits(), EXIT),
-            (storey.plan.open_gates(), DOOR),
-        ):
-            for opening in openings:
-                _name(axes, storey.plan, opening, colour, labels or {})
-        for room in storey.plan.rooms:
-            spot = room.shape.point_on_surface()
-            axes.text(spot.x, spot.y, room.name, ha="center", va="center", fontsize=6, zorder=6)
-        axes.set_title(storey.title, fontsize=10)
-    figure.legend(
-        handles=list(handles.values()),
-        loc="outside lower center",
-        ncols=len(handles),
-        frameon=False,
-        fontsize=9,
-    )
-    return figure
+def ends_of_stairs(plan: FloorPlan, stairs: Sequence[shapely.Polygon]) -> list[Opening]:
+    """The exits of a level that lead onto stairs, and the gates of lifts."""
+    on_stairs = shapely.union_all(stairs).buffer(1e-6)
+    return [
+        each
+        for each in (*plan.open_exits(), *plan.open_gates())
+        if stairs and on_stairs.covers(each.line)
+    ]
 
 
-def _name(
-    axes: Axes, plan: FloorPlan, opening: Opening, colour: str, labels: Mapping[str, str]
-) -> None:
-    """Write an opening's name beside it, on the side of the middle of the plan."""
-    x_min, y_min, x_max, y_max = plan.bounds
-    x, y = opening.midpoint
-    dx, dy = (x_min + x_max) / 2 - x, (y_min + y_max) / 2 - y
-    level = abs(opening.b[0] - opening.a[0]) < abs(opening.b[1] - opening.a[1])
-    # Beside an upright line, above or below one that lies.
-    offset = (np.sign(dx) * 6.0 or 6.0, 0.0) if level else (0.0, np.sign(dy) * 6.0 or 6.0)
-    axes.annotate(
-        labels.get(opening.name, opening.name),
-        (x, y),
-        offset,
-        textcoords="offset points",
-        ha={1.0: "left", -1.0: "right"}.get(float(np.sign(offset[0])), "center"),
-        va={1.0: "bottom", -1.0: "top"}.get(float(np.sign(offset[1])), "center"),
-        color=colour,
-        fontsize=9,
-        fontweight="bold",
-        zorder=7,
-        bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0},
-    )
-
-
-def _stairs_of(building: Building, level: int) -> Iterator[shapely.Polygon]:
-    """The flights, landings and cars of lifts that lead up or down from a level."""
+def _stairs_of(building: Building, level: int) -> Iterator[tuple[str, shapely.Polygon]]:
+    """The flights, landings and cars of lifts that lead up or down from a level, with names."""
     for stairs in building.stairs:
         if level in (stairs.upper, stairs.lower):
-            yield from building.shapes_of(stairs)
+            for shape in building.shapes_of(stairs):
+                yield stairs.name, shape
     for lift in building.lifts:
         if level in lift.numbers:
-            yield lift.shape
+            yield lift.name, lift.shape
 
 
 def floor_figure(
@@ -189,19 +154,19 @@ def floor_figure(
     """A figure of panels as large as the plan's shape allows, and its axes in reading order.
 
     Args:
-        bounds: of the plan: least x and y, greatest x and y, metres.
+        bounds: of what a panel shows: least x and y, greatest x and y, metres.
         rows: of panels.
         columns: of panels.
         largest: width and height of the figure, inches.
     """
     x_min, y_min, x_max, y_max = bounds
     width, height = columns * (x_max - x_min), rows * (y_max - y_min)
-    scale = min((largest[0] - FRAME[0]) / width, (largest[1] - FRAME[1]) / height)
-    size = (
-        max(width * scale + FRAME[0], 6.5),
-        max(height * scale + FRAME[1] + 0.25 * (rows - 1), 2.6),
-    )
-    figure = Figure(figsize=size, dpi=150, layout="constrained")
+    frame = FRAME[1] + ROW * (rows - 1)
+    # Of many rows the panels need some room, even on a picture that is higher than asked.
+    high = max(largest[1] - frame, _LEAST_ROW * rows)
+    scale = min((largest[0] - FRAME[0]) / width, high / height)
+    size = (max(width * scale + FRAME[0], 6.5), max(height * scale + frame, 2.6))
+    figure = Figure(figsize=size, dpi=150, layout="compressed")
     return figure, list(figure.subplots(rows, columns, squeeze=False).flat)
 
 
@@ -261,8 +226,7 @@ def draw_floor(
         )
     )
     handles.insert(0, Line2D([], [], color=WALL, linewidth=1.6, label="wall"))
-    on_stairs = shapely.union_all(stairs).buffer(1e-6)
-    ends = [each for each in plan.open_exits() if on_stairs.covers(each.line)]
+    ends = ends_of_stairs(plan, stairs)
     exits = [each for each in plan.open_exits() if each not in ends]
     for openings, colour, label in ((plan.open_gates(), DOOR, "door"), (exits, EXIT, "exit")):
         if openings:
@@ -272,7 +236,7 @@ def draw_floor(
             )
             handles.append(Line2D([], [], color=colour, linewidth=3.5, label=label))
     x_min, y_min, x_max, y_max = plan.bounds
-    margin = 0.02 * max(x_max - x_min, y_max - y_min)
+    margin = MARGIN * max(x_max - x_min, y_max - y_min)
     axes.set_xlim(x_min - margin, x_max + margin)
     axes.set_ylim(y_min - margin, y_max + margin)
     axes.set_aspect("equal")

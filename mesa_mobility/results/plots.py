@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 # Largest number of track pieces in a picture; more cannot be distinguished and are slow to draw.
 MOST_PIECES = 250_000
+# Up to so many people, tracks are drawn strong enough to be followed one by one.
+_FEW = 100
 PAPER = "paper (Casburn et al. 2005, Fig. 7)"
 # Without the green of exits, the blue of doors and the pale yellow that is lost on white.
 TRACK_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.9, 256)))
@@ -92,7 +94,7 @@ def plot_trajectories(
         drawn = draw_floor(panel, storey.plan, storey.stairs, storey.refuges)
         panel.set_title(storey.title, fontsize=10)
         own = trajectories if storey.rows.all() else trajectories.only(storey.rows)
-        tracks = _tracks(own)
+        tracks = _tracks(own, few=trajectories.people <= _FEW)
         panel.add_collection(tracks)
         left = _inside_at(own, trajectories.frames - 1)
         if len(left):
@@ -186,24 +188,28 @@ def plot_occupancy(
     time, inside = np.asarray(occupancy, dtype=np.float64).T
     figure = Figure(figsize=(8, 4.5), dpi=150, layout="constrained")
     axes = figure.subplots()
-    axes.fill_between(time, inside, color=BODY, alpha=0.12, linewidth=0)
-    label = "everybody" if by_type else "this run"
-    axes.plot(time, inside, color=BODY, linewidth=2, label=label)
-    for colour, (name, values) in zip(cycle(TYPE_COLOURS), (by_type or {}).items(), strict=False):
+    # A type has the blue of a run that is drawn alone.
+    colour, label = (LEFT_INSIDE, "everybody") if by_type else (BODY, "this run")
+    axes.fill_between(time, inside, color=colour, alpha=0.08, linewidth=0)
+    axes.plot(time, inside, color=colour, linewidth=2, label=label)
+    for own_colour, (name, values) in zip(
+        cycle(TYPE_COLOURS), (by_type or {}).items(), strict=False
+    ):
         own = np.asarray(values, dtype=np.float64)
-        axes.plot(own[:, 0], own[:, 1], color=colour, linewidth=1.2, label=name)
+        words = name.replace("_", " ")
+        axes.plot(own[:, 0], own[:, 1], color=own_colour, linewidth=1.2, label=words)
     if inside[-1] == 0:
         out = time[np.flatnonzero(inside == 0)[0]]
-        axes.plot([out], [0], marker="o", color=BODY, clip_on=False, zorder=5)
+        axes.plot([out], [0], marker="o", color=colour, clip_on=False, zorder=5)
         # High enough to stay clear of a reference point beside it.
         axes.annotate(
-            f"all out: {out:.0f} s",
+            f"all out: {out:.1f} s",
             (out, 0),
-            (0, 38),
+            (8, 38),
             textcoords="offset points",
-            ha="center",
-            color=BODY,
-            arrowprops={"arrowstyle": "-", "color": BODY, "linewidth": 0.8},
+            ha="right",
+            color=colour,
+            arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8},
         )
     if reference:
         axes.plot(
@@ -246,7 +252,7 @@ def _inside_at(trajectories: Tracks, frame: int) -> NDArray[np.int64]:
     return rows[trajectories.exit_frames[trajectories.person[rows]] != frame]
 
 
-def _tracks(trajectories: Tracks) -> LineCollection:
+def _tracks(trajectories: Tracks, *, few: bool) -> LineCollection:
     every = max(1, round(trajectories.frame_rate / 10), -(-len(trajectories) // MOST_PIECES))
     start, end = trajectories.steps(every)
     # Each person's every-th row only: its pieces then join end to end.
@@ -258,7 +264,6 @@ def _tracks(trajectories: Tracks) -> LineCollection:
     pieces = np.empty((len(start), 2, 2))
     pieces[:, 0, 0], pieces[:, 0, 1] = trajectories.x[start], trajectories.y[start]
     pieces[:, 1, 0], pieces[:, 1, 1] = trajectories.x[end], trajectories.y[end]
-    few = trajectories.people <= 100
     tracks = LineCollection(
         list(pieces),
         cmap=TRACK_COLOURS,

@@ -175,7 +175,7 @@ def draw(figures: dict[str, Any]) -> Figure:
     axes[1].set_ylabel("lane order")
     axes[1].set_ylim(0, 1)
     for each in axes:
-        each.set_xlabel("density (1/m²)")
+        each.set_xlabel("density (persons/m²)")
     charts.finish(axes)
     return figure
 

@@ -181,10 +181,10 @@ def draw(figures: dict[str, Any]) -> Figure:
         color=charts.MEASURED.colour,
         alpha=0.2,
         linewidth=0,
-        label="J = 2.23 b - 0.155 ± 0.7",
+        label="fit of the experiments ± 0.7 persons/s",
     )
     axes[0].plot(widths, charts.numbers(figures["flow"]), **charts.OURS.line)
-    axes[0].set_ylabel("flow (1/s)")
+    axes[0].set_ylabel("flow (persons/s)")
     axes[1].axhspan(
         *DENSITY_IN_FRONT,
         color=charts.MEASURED.colour,
@@ -193,9 +193,9 @@ def draw(figures: dict[str, Any]) -> Figure:
         label="experiments",
     )
     axes[1].plot(widths, charts.numbers(figures["density in front"]), **charts.OURS.line)
-    axes[1].set_ylabel("density in front (1/m²)")
+    axes[1].set_ylabel("density in front (persons/m²)")
     for each in axes:
-        each.set_xlabel("width (m)")
+        each.set_xlabel("width of the neck (m)")
     charts.finish(axes)
     return figure
 

@@ -99,9 +99,9 @@ def draw(figures: dict[str, Any]) -> Figure:
         panel.set_ylabel("speed along the corridor over 1.5 s (m/s)")
         flow.plot(bins["density"], bins["density"] * bins["p50"], **look.line)
     flow.plot(bins["density"], bins["density"] * middle, **charts.MEASURED.line)
-    flow.set_ylabel("median speed x density (1/(m s))")
+    flow.set_ylabel("median speed times density (persons/(m s))")
     for panel in axes:
-        panel.set_xlabel("individual density (1/m²)")
+        panel.set_xlabel("individual density (persons/m²)")
     charts.finish(axes)
     return figure
 

@@ -4,12 +4,22 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from mesa_mobility.crowd.presets.given import Given
 from mesa_mobility.reports.html import Link, Page, picture
 from mesa_mobility.validation.experiment import Experiment
 from mesa_mobility.verification import Verdict
 from mesa_mobility.verification.report import SAFETY, computed_with, lead_of, table_of_checks
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_COLUMNS = 2
+"""Panels of a picture beside each other."""
+
+_PANEL = 4.4, 3.4
+"""Width and height of a panel, inches."""
 
 
 def write_report(
@@ -38,7 +48,8 @@ def write_report(
     page.section("Summary", "summary")
     page.text(
         f"{sum(passed)} of {len(passed)} comparisons pass. A comparison passes if each figure that "
-        "is judged is as measured; no overlaps of bodies and no steps through walls are allowed."
+        "is judged lies within what was measured, and there are no overlaps of bodies and no steps "
+        "through walls."
     )
     page.table(
         "Comparisons and their verdicts",
@@ -80,9 +91,24 @@ def _comparison(page: Page, experiment: Experiment, verdict: Verdict, seeds: int
         "What was found" + (f" in the runs of {seeds} seeds" if seeds > 1 else ""),
         verdict.checks,
         verdict.figures,
-        note="“outside” is reported and does not count for the verdict.",
+        note="Figures with the verdict “outside” or “reported” do not count for the verdict of the "
+        "comparison.",
     )
     if verdict.figures:
         page.picture(
-            f"Measured and simulated: {experiment.what}", picture(experiment.draw(verdict.figures))
+            f"Measured (grey) and simulated (coloured): {experiment.what}. Bands about curves hold "
+            "the middle 80 %, other bands what was measured",
+            picture(_in_two_columns(experiment.draw(verdict.figures))),
         )
+
+
+def _in_two_columns(figure: Figure) -> Figure:
+    """A figure whose panels are large enough on paper: two beside each other."""
+    if len(figure.axes) > _COLUMNS:
+        rows = -(-len(figure.axes) // _COLUMNS)
+        grid = figure.add_gridspec(rows, _COLUMNS)
+        for number, axes in enumerate(figure.axes):
+            axes.set_subplotspec(grid[divmod(number, _COLUMNS)])
+        width, height = _PANEL
+        figure.set_size_inches(_COLUMNS * width, rows * height)
+    return figure

@@ -8,10 +8,10 @@ from functools import partial
 from typing import Any, TypeAlias
 
 from mesa_mobility.crowd.presets.given import Given
-from mesa_mobility.reports.words import words_of
 from mesa_mobility.runs.jobs import Failed, run_jobs
 from mesa_mobility.runs.workers import Processes
 from mesa_mobility.verification.drawings import first_run_drawn
+from mesa_mobility.verification.wording import number_words
 
 Figures: TypeAlias = dict[str, Any]
 Scenario: TypeAlias = Callable[..., Figures]
@@ -37,11 +37,8 @@ class Case:
 
     @property
     def words(self) -> str:
-        """Its numbers for a reader, such as "people 20, speed 1.2"."""
-        return ", ".join(
-            f"{words_of(name)} {f'{value:g}' if isinstance(value, float) else value}"
-            for name, value in self.numbers
-        )
+        """Its numbers for a reader, such as "20 people, speed 1.2 m/s"."""
+        return ", ".join(number_words(name, value) for name, value in self.numbers)
 
     def __str__(self) -> str:
         numbers = ", ".join(f"{name} {value}" for name, value in self.numbers)

@@ -42,7 +42,7 @@ def corridor_diagram(runs: Runs) -> Figure:
         [each["mean_density"] * each["mean_speed"] for each in flat],
         **{**charts.OURS.dots, "label": "simulated: mean of each run"},
     )
-    flow.set_ylabel("specific flow (1/(m s))")
+    flow.set_ylabel("specific flow (persons/(m s))")
     for panel in (speed, flow):
         panel.set_xlabel("density (persons/m²)")
     charts.finish((speed, flow))
@@ -82,7 +82,7 @@ def filled_corridor_diagram(runs: Runs) -> Figure:
     speed.plot(density, charts.numbers([each["speed"] for each in flat]), **dots)
     flow.plot(density, charts.numbers([each["flow"] for each in flat]), **dots)
     speed.set_ylabel("mean speed (m/s)")
-    flow.set_ylabel("specific flow (1/(m s))")
+    flow.set_ylabel("specific flow (persons/(m s))")
     for panel in (speed, flow):
         panel.set_xlabel("density in the zone (persons/m²)")
     charts.finish((speed, flow))

@@ -58,16 +58,24 @@ def lone_walk(
     return judge
 
 
-def climbs(speeds: Sequence[float]) -> Callable[[Sequence[Figures]], Verdict]:
-    """A judge of runs in which one person walks on a stair: each at the speed set, within 5 %."""
+def climbs(
+    speeds: Sequence[float], names: Sequence[str] = ()
+) -> Callable[[Sequence[Figures]], Verdict]:
+    """A judge of runs in which one person walks on a stair: each at the speed set, within 5 %.
+
+    Args:
+        speeds: set in each run, m/s.
+        names: what each run is called; by default after its speed.
+    """
+    called = names or [f"where {speed:g} m/s is set" for speed in speeds]
 
     def judge(runs: Sequence[Figures]) -> Verdict:
         return Verdict(
             (
                 *everybody_out(runs),
                 *(
-                    within(f"speed {k} m/s", run["speed_mps"], 0.95 * speed, 1.05 * speed)
-                    for k, (run, speed) in enumerate(zip(runs, speeds, strict=True), 1)
+                    within(f"speed {name} m/s", run["speed_mps"], 0.95 * speed, 1.05 * speed)
+                    for name, run, speed in zip(called, runs, speeds, strict=True)
                 ),
             )
         )

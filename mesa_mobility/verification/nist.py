@@ -215,7 +215,7 @@ TESTS = {
     ),
     "nist-2.2": VerificationTest(
         tuple(case(stairs.lone_climber, effort=2.0, **each) for each in LONG_STAIR),
-        judge=judging.climbs((1.0, 1.0)),
+        judge=judging.climbs((1.0, 1.0), ("up", "down")),
     ),
     "nist-2.3": VerificationTest((imo.CORNER,), judge=judging.corner(60.0)),
     "nist-2.4": VerificationTest(

@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from mesa_mobility.crowd.presets.given import Given
-from mesa_mobility.mobility import shipped_map_path
+from mesa_mobility.mobility.mapfile import shipped_maps
 from mesa_mobility.reports.html import Link, Page, picture
 from mesa_mobility.reports.versions import add_versions, machine, sha256_of, versions
 from mesa_mobility.verification.catalogue import Entry, readings, standards
@@ -54,11 +54,18 @@ def write_report(
     page = Page("Verification of mesa-mobility", lead_of(seeds, rules))
     page.section("Summary", "summary")
     verdicts = [outcome.verdict for outcome in outcomes.values()]
+    capped = verdicts.count("cap")
     page.text(
-        f"Passed: {verdicts.count('pass')}. Failed: {verdicts.count('fail')}. Over a design cap "
-        f"that measured crowds exceed too: {verdicts.count('cap')}. A test passes if each figure "
-        "that is judged meets its criterion with every seed."
+        f"Tests: {len(verdicts)}. Passed: {verdicts.count('pass')}. Failed: "
+        f"{verdicts.count('fail')}."
+        + (f" “Cap exceeded”: {capped}." if capped else "")
+        + " A test passes if each figure that is judged meets its criterion with every seed."
     )
+    if capped:
+        page.text(
+            "“Cap exceeded” says that a flow is greater than the one that the standard lets "
+            "designers reckon with. Measured crowds exceed it, too; the test gives their flows."
+        )
     page.table(
         "Tests and their verdicts",
         ["test", "standard", "what is tested", "verdict"],
@@ -76,8 +83,8 @@ def write_report(
     page.table("Standards", ["short name", "title"], list(standards().items()))
     page.text(SAFETY)
     page.text(
-        "Where a standard leaves something open, each test says what was chosen. Figures with a "
-        "criterion that is only reported do not count for the verdict."
+        "Where a standard leaves something open, each test says what was chosen. Figures with the "
+        "verdict “reported” or “outside” do not count for the verdict of the test."
     )
     for title, some in _by_standard(outcomes).items():
         page.section(f"Tests of {title}", title.lower())
@@ -110,16 +117,21 @@ def computed_with(page: Page, seeds: int, rules: Given | None, command: str) -> 
     add_versions(
         page,
         {**versions(), **given.used()},
-        {"movements of able-bodied people": sha256_of(shipped_map_path("able_bodied"))},
+        {
+            f"recorded movements: {path.stem.replace('_', ' ')}": sha256_of(path)
+            for path in sorted(shipped_maps().glob("*.npz"))
+        },
         machine(),
-        f"{_said_of_seeds(seeds).capitalize()}.",
     )
     if not command:
         return
-    page.text("With the same versions, this command gives the same figures:")
-    settings = "".join(f" --set {name}={value}" for name, value in given.values.items())
-    preset = "" if given.preset is None else f" --preset {given.preset_name}"
-    page.code(f"{command} --seeds {seeds}{preset}{settings}")
+    page.lead_in("With the same versions, this command gives the same figures:")
+    words = [*command.split(), "--seeds", str(seeds)]
+    if given.preset is not None:
+        words += ["--preset", given.preset_name]
+    for name, value in given.values.items():
+        words += ["--set", f"{name}={value}"]
+    page.command(words)
 
 
 def table_of_checks(
@@ -236,11 +248,13 @@ def _test(page: Page, entry: Entry, outcome: Outcome) -> None:
         )
     # A diagram says more than the ways of each of its runs.
     most = 1 if outcome.chart is not None else _MOST_PICTURES
-    for case, drawing in outcome.drawings[:most]:
+    of = len(outcome.drawings)
+    for number, (case, drawing) in enumerate(outcome.drawings[:most], 1):
         people = "1 person" if drawing.people == 1 else f"{drawing.people} people"
         some = "" if len(drawing.ways) == drawing.people else f", {len(drawing.ways)} drawn"
+        which = f"run {number} of {of}, {case}" if of > 1 else case
         page.picture(
-            f"Ways of {people}{some}, with a dot where each begins ({case}; seed "
+            f"Ways of {people}{some}, with a dot where each begins ({which}; seed "
             f"{outcome.seeds[0]})",
             picture(draw(drawing)),
         )

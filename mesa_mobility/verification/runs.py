@@ -56,7 +56,7 @@ class Run:
         if building is not None:  # those of its levels, in true coordinates
             storeys = [building.floor_plan_of(level.number) for level in building.levels]
             walls = np.concatenate([plan.walls for plan in storeys])
-        collect(self.trajectories, walls)
+        collect(self.trajectories, walls, building or model.floor_plan)
         safety = check_safety(
             self.trajectories, self.walls, model.floor_plan.free, building=building
         )

@@ -37,7 +37,8 @@ def table_of(text):
     """Rows of the report's table of inputs."""
     part = text.split("Inputs of the runs")[1].split("</table>")[0]
     rows = re.findall(r"<tr>(<td.*?)</tr>", part)
-    return [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in rows]
+    cells = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in rows]
+    return [[re.sub("<[^>]+>", "", cell) for cell in row] for row in cells]
 
 
 @pytest.mark.thorough
@@ -51,12 +52,15 @@ def test_a_crowd_of_four_types_lists_the_maps_of_all_four(plans, tmp_path):
     # A type of both populations is the same for all; the others are those of six runs.
     for name in ("able_bodied", "child"):
         digest = sha256(shipped_map_path(name))
-        assert ["12", f"map of {name}", f"{name}.npz, sha256 {digest}"] in rows
+        assert ["12", f"map of {name.replace('_', ' ')}", f"{name}.npz, sha256 {digest}"] in rows
     assert ["12", "preset", "default"] in rows
     # Each of the four sets with the number of its runs.
     for name in ("older_adult", "wheelchair_manual"):
         digest = sha256(shipped_map_path(name))
-        assert rows.count(["3", f"map of {name}", f"{name}.npz, sha256 {digest}"]) == 2
+        assert (
+            rows.count(["3", f"map of {name.replace('_', ' ')}", f"{name}.npz, sha256 {digest}"])
+            == 2
+        )
     for path in plans:
         assert rows.count(["3", "plan", f"{Path(path).name}, sha256 {sha256(Path(path))}"]) == 2
     assert rows.count(["3", "population", population]) == 2

@@ -155,15 +155,18 @@ def test_the_report_names_the_runs_that_did_not_reach_a_figure(partly):
     assert late > 2
     text = write_report(partly).read_text(encoding="utf-8")
     assert (
-        f"egress_s: not reached in {stalled + late} of 60 runs ({stalled} stalled, {late} timed "
-        "out). They count as later than all others"
+        f"Time until everybody is out (s): not reached in {stalled + late} of 60 runs ({stalled} "
+        f"stalled, {late} timed out). They count as later than all others"
     ) in text
     lacking = int((frame[frame.stalling == 0.2].status != "done").sum())
     reached = frame[frame.stalling == 0.2].egress_s.max()
     assert f"<td>&gt; {reached:.4g}, not reached in {lacking} of 30</td>" in text
     assert f"<td>not given: {lacking} of 30 have none</td>" in text
     # The speed is lacking in those alone that timed out.
-    assert f"mean_speed_mps: not reached in {late} of 60 runs ({late} timed out)." in text
+    assert (
+        f"Mean speed, waiting included (m/s): not reached in {late} of 60 runs ({late} timed out)."
+        in text
+    )
 
 
 def test_a_store_s_estimates_count_them_as_well(partly):

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.reports import pdf
 from mesa_mobility.reports.html import Link, Page, picture
-from mesa_mobility.reports.words import words_of
+from mesa_mobility.reports.words import with_value, words_of
 
 PICTURE = picture(Figure(figsize=(1, 1)))
 
@@ -64,6 +64,34 @@ def test_numbers_are_set_to_the_right_and_verdicts_are_marked(page, tmp_path):
     assert '<td>b</td><td><span class="fail">FAIL</span></td>' in text
 
 
+def test_units_and_words_of_commands_stay_in_one_piece(tmp_path):
+    page = Page("Report")
+    page.section("Flows", "flows")
+    page.table("", ["specific flow (persons/(m s))", "plain"], [["a" * 64, "b"]])
+    page.table("", ["", ""], [["a", "b"]])
+    page.command(["run", "my room", "--set", "people=3"])
+    page.write(tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert '<th>specific flow <span class="unit">(persons/(m s))</span></th><th>plain</th>' in text
+    assert f'<span class="long">{"a" * 64}</span>' in text
+    # A table without names of columns has no row for them.
+    assert text.count("<thead>") == 1
+    words = ["run", "&#x27;my room&#x27;", "--set", "people=3"]
+    assert " ".join(f"<span>{each}</span>" for each in words) in text
+
+
+@pytest.mark.parametrize(
+    ("label", "said"),
+    [
+        ("door width (m)", "door width 0.8 m"),
+        ("flow (persons/(m s))", "flow 0.8 persons/(m s)"),
+        ("people", "people 0.8"),
+    ],
+)
+def test_a_label_with_its_value(label, said):
+    assert with_value(label, "0.8") == said
+
+
 @pytest.mark.parametrize(
     ("name", "words"),
     [
@@ -101,6 +129,8 @@ def test_a_page_is_printed_on_a4(page, tmp_path, browser_program, monkeypatch):
     for size in sizes:
         assert size == pytest.approx((0, 0, 595.28, 841.89), abs=1)
     assert [each.name for each in tmp_path.iterdir() if each.name.startswith(".")] == []
+    # Its headings are bookmarks.
+    assert b"/Outlines" in content
 
 
 def test_what_lacks_for_a_pdf_is_said_in_one_line(page, tmp_path, monkeypatch):

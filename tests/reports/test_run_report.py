@@ -1,13 +1,17 @@
 """The report of a run, from tracks made by hand."""
 
 import re
+import shlex
+from dataclasses import replace
 from html import unescape
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from mesa_mobility import Exit, FloorPlan, Gate
 from mesa_mobility.reports.run.evidence import command_of
+from mesa_mobility.reports.run.pictures import _curves
 from mesa_mobility.reports.run.report import write_run_report
 from mesa_mobility.results import Trajectories, measure
 from mesa_mobility.results.run import Run
@@ -119,13 +123,22 @@ def test_doors_and_their_flows(text):
         ("east", "2.00", "2", "5.9", "7.9", "0.50", "0.25"),
     ]
     assert rows_of(text, "Doors and exits</caption>") == [
-        ("1", "middle", "door", "0", "4.00"),
-        ("2", "east", "exit", "0", "2.00"),
+        ("1: middle", "door", "4.00"),
+        ("2: east", "exit", "2.00"),
+    ]
+
+
+def test_the_longest_queue_and_its_time(text):
+    # Nobody waits but the third person, who passes no door.
+    rows = rows_of(text, "Queues and clogs")
+    assert [row[:6] for row in rows] == [
+        ("middle", "0", "-", "-", "0", "-"),
+        ("east", "0", "-", "-", "0", "-"),
     ]
 
 
 def test_levels_of_service_of_all_of_the_floor(text):
-    rows = rows_of(text, "Fruin&#x27;s levels of service")
+    rows = rows_of(text, "Levels of service for walkways")
     assert [each[0] for each in rows] == ["A", "B", "C", "D", "E", "F"]
     assert sum(float(each[2]) for each in rows) == pytest.approx(40.0, abs=0.3)
     assert rows[0][1] == "up to 0.31"
@@ -134,7 +147,7 @@ def test_levels_of_service_of_all_of_the_floor(text):
 
 def test_checks_and_people(text):
     rows = {each[0]: each[1:] for each in rows_of(text, "Checks of the run")}
-    assert rows["overlaps of bodies"] == ("0", "0", "pass")
+    assert rows["overlaps of two bodies"] == ("0", "0", "pass")
     assert rows["steps through walls"] == ("2", "0", "FAIL")
     assert rows["run ended because nobody made progress"] == ("yes", "no", "FAIL")
     assert rows_of(text, "Types of people") == [("able bodied", "3", "1.00 / 1.20 / 1.40", "0.0")]
@@ -144,8 +157,9 @@ def test_versions_digests_and_the_command(text):
     assert ("numpy", "2.0") in rows_of(text, "Versions</caption>")
     assert "cd" * 32 in text
     # The door is as wide as by default, so the command need not say it.
-    command = "mesa-mobility run doorway --seed 7 --preset default --set pedestrians=3 --set"
-    assert f"{command} headway.time=0.6</pre>" in text
+    command = re.search(r'<pre class="command">(.*?)</pre>', text).group(1)
+    said = "mesa-mobility run doorway --seed 7 --preset default --set pedestrians=3 --set"
+    assert re.sub("<[^>]+>", "", command) == f"{said} headway.time=0.6"
 
 
 @pytest.mark.parametrize(
@@ -168,7 +182,48 @@ def test_versions_digests_and_the_command(text):
     ],
 )
 def test_the_command_that_repeats_a_run(changes, command):
-    assert command_of({**SUMMARY, **changes}) == command
+    assert shlex.join(command_of({**SUMMARY, **changes})) == command
+
+
+def test_what_parameters_and_behaviours_mean(text):
+    assert rows_of(text, "Parameters of the model") == [
+        ("pedestrians", "3", "people, all in the room at the start."),
+        ("door width", "1", "width of both doors, metres."),
+    ]
+    [headway] = rows_of(text, "Behaviour of the people")
+    does = "Keeps a distance from people ahead that grows with speed."
+    assert headway == ("headway", does, "weight\N{NO-BREAK SPACE}5", "time 0.6 s")
+
+
+def test_figures_by_type_of_people(run, tmp_path):
+    tracks = run.trajectories
+    own = replace(tracks, person_data={"type": np.array(["adult", "child", "child"])})
+    page = tmp_path / "page.html"
+    write_run_report(replace(run, trajectories=own), measure(own, run.plan), page)
+    text = page.read_text(encoding="utf-8")
+    # The adult is out after 6.0 s; one of two children is still there after 10 s.
+    assert rows_of(text, "Clearing times by type of people")[0] == (
+        "the whole floor",
+        "6.0",
+        "> 10.0",
+    )
+    assert rows_of(text, "People of each type who pass a door") == [
+        ("middle", "1 (-)", "1 (-)"),
+        ("east", "1 (-)", "1 (-)"),
+    ]
+
+
+def test_doors_that_few_pass_have_no_curve():
+    people = {"wide": 100, "narrow": 40, "side": 4}
+    table = pd.DataFrame(
+        [(door, float(n), n) for door, most in people.items() for n in range(1, most + 1)],
+        columns=["door", "time_s", "people"],
+    )
+    assert list(_curves(table)) == ["wide", "narrow"]
+    many = pd.DataFrame(
+        [(f"door {n}", 1.0, 20 + n) for n in range(12)], columns=["door", "time_s", "people"]
+    )
+    assert list(_curves(many)) == [f"door {n}" for n in range(4, 12)]
 
 
 def test_a_run_in_a_building_has_levels_and_stairs(tmp_path):
@@ -181,12 +236,18 @@ def test_a_run_in_a_building_has_levels_and_stairs(tmp_path):
     write_run_report(run, measure(run.trajectories, building), page)
     text = page.read_text(encoding="utf-8")
     assert f"A building of {len(building.levels)} levels" in text
-    assert [row[0] for row in rows_of(text, "Stairs</caption>")] == [
-        each.name for each in building.stairs
+    assert rows_of(text, "Stairs, ramps and escalators</caption>") == [
+        ("south", "stairs", "1", "0", "1.20"),
+        ("north", "stairs", "1", "0", "1.20"),
     ]
     places = [row[0] for row in rows_of(text, "Clearing times")]
-    assert places[0] == "the whole floor"
+    assert places[0] == "the whole building"
     assert {f"level {each.number}" for each in building.levels} <= set(places)
     assert "level by level from the top" in text
     # Nothing was counted, so nothing has passed.
-    assert rows_of(text, "Checks of the run")[0] == ("overlaps of bodies", "-", "0", "not counted")
+    assert rows_of(text, "Checks of the run")[0] == (
+        "overlaps of two bodies",
+        "-",
+        "0",
+        "not counted",
+    )

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mesa_mobility import Exit, FloorPlan, Gate
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.reports.html import Page
 from mesa_mobility.results import Trajectories
@@ -17,6 +18,11 @@ from mesa_mobility.verification.drawings import collect, draw, first_run_drawn
 from mesa_mobility.verification.report import write_report
 
 WALLS = np.array([[0.0, 0.0, 10.0, 0.0], [0.0, 2.0, 10.0, 2.0]])
+CORRIDOR = FloorPlan(
+    "POLYGON ((0 0, 10 0, 10 2, 0 2, 0 0))",
+    exits=[Exit("out", (10, 0), (10, 2))],
+    gates=[Gate("middle", (5, 0), (5, 2))],
+)
 
 
 def tracks(people, frames):
@@ -43,22 +49,38 @@ def outcome(verdict, **keywords):
 
 
 def test_only_the_first_run_is_drawn_and_only_where_one_asks():
-    collect(tracks(2, 3), WALLS)  # nobody asks
+    collect(tracks(2, 3), WALLS, CORRIDOR)  # nobody asks
     with first_run_drawn() as found:
-        collect(tracks(100, 400), WALLS)
-        collect(tracks(2, 3), WALLS)
+        collect(tracks(100, 400), WALLS, CORRIDOR)
+        collect(tracks(2, 3), WALLS, CORRIDOR)
     [drawing] = found
     assert (drawing.people, len(drawing.ways)) == (100, 60)
     # Those drawn are spread over all, and each way has its first and its last point.
     assert drawing.ways[0][0] == pytest.approx([0.0, 0.0])
     assert drawing.ways[-1][-1] == pytest.approx([399 * 0.04, 99 * 0.02])
     assert max(len(way) for way in drawing.ways) == 150
-    assert draw(drawing).axes[0].get_xlabel() == "x (m)"
+    assert drawing.exits.tolist() == [[10, 0, 10, 2]]
+    assert drawing.doors.tolist() == [[5, 0, 5, 2]]
+    figure = draw(drawing)
+    assert figure.axes[0].get_xlabel() == "x (m)"
+    said = [each.get_text() for each in figure.legends[0].get_texts()]
+    assert said == ["wall", "door", "exit", "way of a person, from its dot"]
+
+
+def test_stairs_are_drawn():
+    from tests.fixtures.buildings import two_storeys
+
+    building = two_storeys()
+    with first_run_drawn() as found:
+        collect(tracks(2, 3), WALLS, building)
+    # A straight flight, and two flights with a landing.
+    assert len(found[0].stairs) == 4
+    assert "stairs or lift" in [each.get_text() for each in draw(found[0]).legends[0].get_texts()]
 
 
 def test_the_page_has_criterion_source_figures_picture_verdict_and_versions(tmp_path):
     with first_run_drawn() as found:
-        collect(tracks(3, 20), WALLS)
+        collect(tracks(3, 20), WALLS, CORRIDOR)
     entries = catalogue()
     names = ["rimea-01", "rimea-06", "imo-04"]
     verdicts = [
@@ -74,8 +96,8 @@ def test_the_page_has_criterion_source_figures_picture_verdict_and_versions(tmp_
     write_report(entries, dict(zip(names, verdicts, strict=True)), page)
     text = page.read_text(encoding="utf-8")
     assert not re.search(r"(?:src|href)=\"(?!data:|#)", text)
-    assert "Passed: 1. Failed: 1. Over a design cap that measured crowds exceed too: 1." in text
-    title = "one person walks along a corridor at its own speed"
+    assert "Tests: 3. Passed: 1. Failed: 1. “Cap exceeded”: 1." in text
+    title = "one person walks along a corridor at their own speed"
     assert f'<h3 id="rimea-01">3.1 rimea-01: {title}</h3>' in text
     assert '<a href="#rimea-01">rimea-01</a>' in text
     assert "<td>source</td><td>RiMEA guideline 3.0 and 4.1.1, test 1</td>" in text
@@ -86,15 +108,16 @@ def test_the_page_has_criterion_source_figures_picture_verdict_and_versions(tmp_
     # In the summary and in the test itself; each figure has its verdict beside it.
     assert text.count('<span class="pass">pass</span>') == 2 + 1
     assert text.count('<span class="fail">FAIL</span>') == 2
-    assert text.count("cap exceeded") == 2
+    assert text.count(">cap exceeded<") == 2
     assert text.count("data:image/png;base64,") == 1
     assert "Ways of 3 people, with a dot where each begins (speed 1.33; seed 1)" in text
-    assert "mesa-mobility verify rimea-01 rimea-06 imo-04 --seeds 2" in text
+    command = re.sub("<[^>]+>", "", re.search(r'<pre class="command">(.*?)</pre>', text)[1])
+    assert command == "mesa-mobility verify rimea-01 rimea-06 imo-04 --seeds 2"
     for hidden in ("POLYGON", "LINESTRING", ".csv", ".toml"):
         assert hidden not in text
     assert re.search(r"<td>mesa-mobility</td><td>\d", text)
-    assert re.search(r"<td>movements of able-bodied people</td><td>sha256 [0-9a-f]{64}", text)
-    assert "Seeds 1 to 2." in text
+    assert re.search(r"<td>recorded movements: able bodied up</td>.*[0-9a-f]{64}", text)
+    assert "seeds 1 to 2." in text
     with pytest.raises(ResultsError, match="cannot be written"):
         write_report(entries, {"rimea-01": verdicts[0]}, tmp_path / "nowhere" / "report.html")
 
@@ -127,7 +150,7 @@ def test_the_page_of_a_comparison(tmp_path):
 
 def test_one_person_is_no_people_and_a_long_floor_has_no_blank_around_it(tmp_path):
     with first_run_drawn() as found:
-        collect(tracks(1, 20), np.array([[0.0, 0.0, 40.0, 0.0], [0.0, 2.0, 40.0, 2.0]]))
+        collect(tracks(1, 20), np.array([[0.0, 0.0, 40.0, 0.0], [0.0, 2.0, 40.0, 2.0]]), CORRIDOR)
     page = tmp_path / "report.html"
     passed = outcome("pass", drawings=[("speed 1.33", found[0])])
     write_report(catalogue(), {"rimea-01": passed}, page)
@@ -135,8 +158,8 @@ def test_one_person_is_no_people_and_a_long_floor_has_no_blank_around_it(tmp_pat
     assert "Ways of 1 person, with a dot where each begins (speed 1.33; seed 1)" in text
     png = base64.b64decode(re.search(r"base64,([^\"]+)", text)[1])
     width, height = struct.unpack(">II", png[16:24])
-    # 40 m by 2 m, and the labels of the axes.
-    assert height < 0.25 * width
+    # 40 m by 2 m, stretched to be seen, the labels of the axes and the legend.
+    assert height < 0.3 * width
 
 
 def test_a_label_beside_a_long_text_is_not_broken_within_a_word(

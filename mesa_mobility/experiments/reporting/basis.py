@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from mesa_mobility.crowd import PedestrianModel
 from mesa_mobility.errors import MobilityError
 from mesa_mobility.experiments.experiment import Experiment, model_class
+from mesa_mobility.experiments.reporting.labels import labels_of, meanings_of
 from mesa_mobility.experiments.reporting.pictures import value_text
 from mesa_mobility.experiments.workers.one_run import make_model, rules_of
 from mesa_mobility.reports.run.basis import (
@@ -19,7 +20,7 @@ from mesa_mobility.reports.run.basis import (
     add_types,
 )
 from mesa_mobility.reports.run.texts import count
-from mesa_mobility.reports.words import words_of
+from mesa_mobility.reports.words import with_value, words_of
 from mesa_mobility.results import rooms_of
 
 if TYPE_CHECKING:
@@ -60,15 +61,12 @@ def add_basis(page: Page, store: Store, frame: pd.DataFrame) -> None:
         plan = getattr(model, "building", None) or model.floor_plan
         add_plan_picture(page, plan)
         if len(rooms := rooms_of(plan)) > 1:
-            add_rooms(page, rooms)
+            add_rooms(page, rooms, plan)
         more = int(frame["inputs"].nunique()) - 1 if "inputs" in frame else 0
         page.text(
-            "The plan and the people are those of the first run at its start"
-            + (
-                f"; {more} further sets of inputs differ, see section “Inputs”."
-                if more > 0
-                else "."
-            )
+            f"Plan, people and behaviour are those of the first run{_point_said(experiment)}, at "
+            "its start."
+            + (" Other runs differ in what the section “Inputs” lists." if more > 0 else "")
         )
         add_types(page, model.summary()["people"])
         if len(model.sources):
@@ -76,8 +74,18 @@ def add_basis(page: Page, store: Store, frame: pd.DataFrame) -> None:
         for text in ASSUMPTIONS[:-1]:
             page.text(text)
         page.notice(LIMITS)
-        add_rules(page, model.rules.numbers(), {})
+        add_rules(page, model.rules.numbers())
     _design(page, experiment, frame)
+
+
+def _point_said(experiment: Experiment) -> str:
+    """The values of the first point, in brackets."""
+    labels = labels_of(experiment)
+    said = [
+        with_value(words_of(name, labels), value_text(value))
+        for name, value in experiment.design[0].items()
+    ]
+    return f" ({', '.join(said)})" if said else ""
 
 
 def _design(page: Page, experiment: Experiment, frame: pd.DataFrame) -> None:
@@ -85,9 +93,9 @@ def _design(page: Page, experiment: Experiment, frame: pd.DataFrame) -> None:
     rows: list[list[Any]] = [
         ["model", experiment.model],
         ["kind of design", experiment.design.kind.replace("_", " ")],
-        ["points of the design", len(experiment.design)],
+        ["points of the design (sets of parameters)", len(experiment.design)],
         [
-            "runs of each point",
+            "runs of each point, with a seed each",
             "as many as it takes" if experiment.replications == "auto" else experiment.replications,
         ],
         ["seed of the experiment", experiment.seed],
@@ -102,16 +110,17 @@ def _design(page: Page, experiment: Experiment, frame: pd.DataFrame) -> None:
         if getattr(experiment, name) is not None:
             rows.append([f"a run is stopped after ({unit})", f"{getattr(experiment, name):g}"])
     page.table("Design", ["what", "value"], [[what, str(value)] for what, value in rows])
-    values, labels = [], experiment.report.labels
+    values, labels, meant = [], labels_of(experiment), meanings_of(experiment)
     for name, value in experiment.fixed.items():
-        values.append([words_of(name, labels), "the same in all runs", value_text(value)])
+        said = [words_of(name, labels), "the same in all runs", value_text(value)]
+        values.append([*said, meant.get(name, "")])
     for name in experiment.design.column_types():
         each = sorted(frame[name].dropna().unique().tolist())
         listed = ", ".join(value_text(value) for value in each[:12])
         if len(each) > 12:
             listed = f"{value_text(each[0])} to {value_text(each[-1])}, {len(each)} values"
-        values.append([words_of(name, labels), "varied", listed])
+        values.append([words_of(name, labels), "varied", listed, meant.get(name, "")])
     if values:
-        page.table("Parameters", ["parameter", "role", "values"], values)
+        page.table("Parameters", ["parameter", "role", "values", "meaning"], values)
     else:
         page.text("All parameters of the model have their default values.")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ from mesa_mobility.experiments.design.points import point_key
 from mesa_mobility.experiments.experiment import COMMON
 from mesa_mobility.experiments.intervals import Estimate
 from mesa_mobility.experiments.observed import estimate, is_time, observed
+from mesa_mobility.experiments.reporting.labels import labels_of
 from mesa_mobility.experiments.reporting.pictures import LEAST_RUNS, value_text
 from mesa_mobility.experiments.storing.rows import BLOCKED, FAILED, STALLED, TIMED_OUT
 from mesa_mobility.reports.words import words_of
@@ -34,8 +35,6 @@ MOST_VALUES = 6
 
 _ESTIMATED = {"mean": "mean", "p50": "median", "p95": "95th percentile"}
 """The kinds of estimates of a figure, by how they are asked for."""
-
-_OF_DOORS = ("people", "first_s", "last_s", "flow_per_s")
 
 
 def known_of(how: str, figure: str, values: NDArray[np.float64]) -> Estimate:
@@ -64,16 +63,17 @@ def add_estimates(
     page.table(
         f"{label}, by point of the design",
         [
-            *(words_of(name, experiment.report.labels) for name in names),
+            *(words_of(name, labels_of(experiment)) for name in names),
             "runs",
             *_ESTIMATED.values(),
             "least to greatest",
         ],
         rows,
-        "In brackets 95 % intervals, of the mean by Student's t, of percentiles between two of the "
-        f"runs (the 95th percentile needs about 72 runs). Fewer than {LEAST_RUNS} runs have none.",
+        "In brackets: 95 % intervals. That of a mean is Student's t; that of a percentile lies "
+        "between two of the runs, and the 95th percentile has one from about 72 runs on. Fewer "
+        f"than {LEAST_RUNS} runs have none.",
     )
-    if text := lacking(frame, figure):
+    if text := lacking(frame, figure, label):
         page.text(text)
     if failed := int((frame["status"] == FAILED).sum()):
         page.text(f"{failed} of {len(frame)} runs have failed, and count nowhere.")
@@ -81,8 +81,14 @@ def add_estimates(
         page.text(f"The first {MOST_ROWS} of {frame['point'].nunique()} points.")
 
 
-def lacking(frame: pd.DataFrame, figure: str) -> str:
-    """A sentence on the runs that did not reach a figure, and why; nothing where all did."""
+def lacking(frame: pd.DataFrame, figure: str, label: str) -> str:
+    """A sentence on the runs that did not reach a figure, and why; nothing where all did.
+
+    Args:
+        frame: rows of the store.
+        figure: the column.
+        label: what it is called.
+    """
     runs = frame[frame["status"] != FAILED]
     of = runs[np.isinf(observed(runs, figure))]
     if not len(of):
@@ -95,52 +101,21 @@ def lacking(frame: pd.DataFrame, figure: str) -> str:
     counts["ended without it"] = len(of) - sum(counts.values())
     why = ", ".join(f"{count} {how}" for how, count in counts.items() if count)
     count_as = (
-        "They count as later than all others: no percentile is given that lies among them, and"
+        "They count as later than all others (censored): no percentile is given that lies among "
+        "them, and"
         if is_time(figure)
         else "No percentile of its points is given, and"
     )
     return (
-        f"{figure}: not reached in {len(of)} of {len(runs)} runs ({why}). {count_as} no mean, "
-        "since that of the others would be taken for the mean of all."
-    )
-
-
-def add_doors(page: Page, experiment: Any, frame: pd.DataFrame) -> None:
-    """Add figures of each door at each point, where runs have kept them."""
-    doors = list(dict.fromkeys(_doors(frame)))
-    page.section("Doors and exits", "doors")
-    if not doors:
-        page.text(
-            "The runs have not kept figures of doors. An experiment keeps them if it asks so."
-        )
-        return
-    names = list(experiment.design.column_types())
-    rows = []
-    for _, of in frame.groupby("point", sort=False):
-        for door in doors:
-            found = []
-            for figure in _OF_DOORS:
-                column = f"door.{door}.{figure}"
-                values = observed(of, column) if column in of else np.full(len(of), np.nan)
-                found.append(str(known_of("mean", column, values[~np.isnan(values)])))
-            rows.append([*(value_text(of[name].iloc[0]) for name in names), door, *found])
-    page.table(
-        "Means over the runs, by point of the design",
-        [
-            *(words_of(name, experiment.report.labels) for name in names),
-            "door or exit",
-            *(words_of(each) for each in _OF_DOORS),
-        ],
-        rows[:MOST_ROWS],
-        "Everybody counts at their first passage; the flow is (N - 1) / (t_N - t_1) of N passages "
-        "at the times t.",
+        f"{label[:1].upper()}{label[1:]}: not reached in {len(of)} of {len(runs)} runs ({why}). "
+        f"{count_as} no mean, since that of the others would be taken for the mean of all."
     )
 
 
 def add_comparison(page: Page, store: Store, frame: pd.DataFrame, figures: Sequence[str]) -> None:
     """Add the comparison of designs in pairs of runs, where seeds are common."""
     experiment = store.experiment()
-    labels = experiment.report.labels
+    labels = labels_of(experiment)
     names = [
         name
         for name in experiment.design.column_types()
@@ -208,7 +183,7 @@ def add_convergence(page: Page, store: Store) -> None:
             "The pictures above show whether the means have settled."
         )
         return
-    precision = experiment.precision
+    precision, labels = experiment.precision, labels_of(experiment)
     found = store.assessments()
     rows = []
     for index in range(min(len(experiment.design), MOST_ROWS)):
@@ -226,13 +201,24 @@ def add_convergence(page: Page, store: Store) -> None:
     met = [*precision.figures, *(["occupancy"] if precision.occupancy else [])]
     page.table(
         "Convergence",
-        [*experiment.design.column_types(), "runs", "ended by", *met],
+        [
+            *(words_of(name, labels) for name in experiment.design.column_types()),
+            "runs",
+            "ended by",
+            *(_asked(name, labels) for name in met),
+        ],
         rows,
         f"Figures are asked for to {precision.tolerance:.1%} at {precision.confidence:.0%} "
         f"confidence, with {precision.least} to {precision.most} runs of each point. Runs end when "
         "they happen to scatter little: where a mean has ended them, its interval here allows for "
         "that, and is the one to quote.",
     )
+
+
+def _asked(name: str, labels: Mapping[str, str]) -> str:
+    """A figure whose precision is asked for, such as "p95 egress_s", in words."""
+    how, _, figure = name.partition(" ")
+    return f"{_ESTIMATED.get(how, how)}: {words_of(figure, labels)}" if figure else name
 
 
 def _ended(known: Assessment, precision: Any) -> str:
@@ -253,9 +239,3 @@ def _reached(name: str, known: Assessment) -> str:
     if name in known.estimates:
         return f"{known.estimates[name]}: {said}"
     return f"{said}: {known.without_curve} runs timed out" if known.without_curve else said
-
-
-def _doors(frame: pd.DataFrame) -> Iterator[str]:
-    for column in map(str, frame.columns):
-        if column.startswith("door.") and column.endswith(".people"):
-            yield column.removeprefix("door.").removesuffix(".people")

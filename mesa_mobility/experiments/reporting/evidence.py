@@ -7,6 +7,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from mesa_mobility.experiments.reporting.estimates import MOST_ROWS
+from mesa_mobility.reports.run.texts import in_words
 from mesa_mobility.reports.versions import add_versions
 
 if TYPE_CHECKING:
@@ -55,12 +56,13 @@ def add_inputs(page: Page, frame: pd.DataFrame) -> None:
     rows = [[len(known), *each] for each in sorted(common)]
     for text, count in counts.most_common(_MOST_SETS):
         rows += [[count, *each] for each in sorted(set(sets[text].items()) - common)]
-    note = "Of each set of inputs once, with the number of runs that used it."
+    note = "“Runs” is the number of runs that used the input."
     if (more := len(sets) - _MOST_SETS) > 0:
         note += f" {more} further sets differ from run to run; the column inputs has them."
     if missing := len(frame) - len(known):
         note += f" {missing} runs ended before their inputs were known, or are of another version."
-    page.table("Inputs of the runs", ["runs", "input", "which"], rows, note)
+    shown = [[count, in_words(name), which] for count, name, which in rows]
+    page.table("Inputs of the runs", ["runs", "input", "which"], shown, note)
 
 
 def add_repeating(page: Page, definition: dict[str, Any]) -> None:
@@ -68,19 +70,27 @@ def add_repeating(page: Page, definition: dict[str, Any]) -> None:
     session = definition["sessions"][-1]
     page.section("Versions and how to repeat the experiment", "repeat")
     add_versions(
-        page, session["versions"], session["inputs"], session["machine"], "Of the last session."
+        page,
+        session["versions"],
+        session["inputs"],
+        session["machine"],
+        "Those of the session in which runs were last computed.",
     )
     page.table(
-        "Sessions",
-        ["began", "executor", "mesa-mobility"],
+        "Sessions: when runs were computed, and how",
+        ["began", "how runs were spread", "mesa-mobility"],
         [
-            [each["began"], each["executor"], each["versions"].get("mesa-mobility", "-")]
+            [
+                each["began"].replace("T", " ").replace("+00:00", " UTC"),
+                each["executor"],
+                each["versions"].get("mesa-mobility", "-"),
+            ]
             for each in definition["sessions"]
         ],
     )
-    page.text(
-        "Save the following as experiment.json. With the same versions and inputs, this command "
-        "does the same runs:"
+    page.lead_in(
+        "Save the text below as experiment.json. With the same versions and inputs, this command "
+        "computes the same runs:"
     )
-    page.code("mesa-mobility experiment run experiment.json")
+    page.command(["mesa-mobility", "experiment", "run", "experiment.json"])
     page.json(definition["experiment"])

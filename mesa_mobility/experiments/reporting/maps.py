@@ -11,8 +11,10 @@ import numpy as np
 
 from mesa_mobility.experiments.observed import observed
 from mesa_mobility.experiments.reporting.basis import model_again
+from mesa_mobility.experiments.reporting.labels import labels_of
 from mesa_mobility.experiments.storing.rows import TRAJECTORIES
 from mesa_mobility.reports.run.service import add_service
+from mesa_mobility.reports.words import words_of
 from mesa_mobility.results import measure
 from mesa_mobility.results.trajectories import read_parquet
 
@@ -45,8 +47,9 @@ def add_maps(page: Page, store: Store, frame: pd.DataFrame, figures: Sequence[st
     add_service(
         page,
         measure(tracks, plan, every=float(every)),
-        "These maps are those of a single run, which has the median of the first figure at the "
-        f"first point of the design: {chosen}.",
+        "These maps are those of a single run at the first point of the design, the one with the "
+        f"median of “{words_of(figures[0], labels_of(experiment))}”. Its name in the store is "
+        f"{chosen}.",
     )
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from mesa_mobility.experiments.observed import estimate, observed
 from mesa_mobility.experiments.storing.rows import FAILED
 from mesa_mobility.reports.html import picture
-from mesa_mobility.reports.words import words_of
+from mesa_mobility.reports.words import with_value, words_of
 from mesa_mobility.results.plots import TYPE_COLOURS
 
 if TYPE_CHECKING:
@@ -29,8 +29,11 @@ _MARKS = {"v": "median, no mean: some runs did not reach it", "^": "the median i
 _MOST_POINTS = 8
 """Points of the design with a colour each."""
 
-_SPREAD = 0.3
-"""Share of the room between two places over which single runs are spread."""
+_SPREAD = (0.06, 0.2)
+"""Single runs lie so far beside their place, from and to, as shares of the room between two."""
+
+_NARROW = 6
+"""That room is at most the range of all places over so many, so that runs stay near theirs."""
 
 
 def picture_of(
@@ -57,11 +60,14 @@ def picture_of(
         by = [n for n in names if n != along and 1 < done[n].nunique() <= _MOST_POINTS]
         step = _step(done[along])
         for value, of in done.groupby(by[0]) if by else [(None, done)]:
-            said = None if value is None else f"{words_of(by[0], labels)} {value_text(value)}"
+            said = with_value(words_of(by[0], labels), value_text(value)) if by else None
             places = np.unique(of[along].dropna())
             groups = [observed(of[of[along] == x], figure) for x in places]
             _draw(axes, places, groups, step, figure, said)
         axes.set_xlabel(words_of(along, labels))
+        # All places, also those without a value to draw, with room for the runs beside them.
+        first, last = done[along].min(), done[along].max()
+        axes.set_xlim(first - 0.3 * step, last + 0.5 * step)
     else:
         points = [of for _, of in done.groupby("point", sort=False)]
         _draw(axes, np.arange(len(points)), [observed(of, figure) for of in points], 1.0, figure)
@@ -72,7 +78,7 @@ def picture_of(
             axes.plot([], [], marker, color="#555555", fillstyle="none", label=said)
         axes.set_title(f"not reached in {lacking} of {len(done)} runs", fontsize=9)
     if axes.get_legend_handles_labels()[1]:
-        axes.legend(frameon=False, fontsize=8)
+        drawn.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=8)
     axes.set_ylabel(words_of(figure, labels))
     return picture(drawn)
 
@@ -169,7 +175,7 @@ def _draw(
     for place, own in zip(places, groups, strict=True):
         reached = own[np.isfinite(own)]
         # In a fixed order, so that the same runs give the same picture.
-        aside = np.linspace(0.1, _SPREAD, len(reached))
+        aside = np.linspace(*_SPREAD, len(reached))
         axes.plot(place + step * aside, reached, ".", color=colour, alpha=0.45, markersize=4)
     for marker in _MARKS:
         instead = [_instead(figure, each, marker) for each in groups]
@@ -177,15 +183,17 @@ def _draw(
 
 
 def _step(values: pd.Series[Any]) -> float:
-    """The least room between two values."""
+    """The room that the runs of a value have: up to the next one, if that is near."""
     places = np.unique(values.dropna())
-    return float(np.diff(places).min()) if len(places) > 1 else 1.0
+    if len(places) < 2:
+        return 1.0
+    return float(min(np.diff(places).min(), np.ptp(places) / _NARROW))
 
 
 def _said_of_point(of: pd.DataFrame, names: list[str], labels: Mapping[str, str]) -> str:
     """The values of a point's parameters, each on a line."""
     row = of.iloc[0]
-    said = [f"{words_of(name, labels)} {value_text(row[name])}" for name in names]
+    said = [with_value(words_of(name, labels), value_text(row[name])) for name in names]
     return "\n".join(said) if said else f"{len(of)} runs"
 
 

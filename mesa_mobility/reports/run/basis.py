@@ -11,27 +11,29 @@ import shapely
 from mesa_mobility.floorplan import FloorPlan, Room
 from mesa_mobility.reports.html import Page, picture
 from mesa_mobility.reports.run.pictures import PAGE
-from mesa_mobility.reports.run.texts import count, number
+from mesa_mobility.reports.run.places import time_text
+from mesa_mobility.reports.run.rules import add_parameters, add_rules
+from mesa_mobility.reports.run.texts import count, in_words, level_words, number
 from mesa_mobility.results.engineering.doors import doors_of
 from mesa_mobility.results.engineering.measured import Measured
-from mesa_mobility.results.floor import plan_figure
 from mesa_mobility.results.measures.by_type import people_by, rows_by_type
+from mesa_mobility.results.plan_picture import plan_figure
 from mesa_mobility.results.run import Run
 
 if TYPE_CHECKING:
     from mesa_mobility.buildings import Building
 
 ASSUMPTIONS = (
-    "Each person follows recorded movements of real people, and chooses the next one by a sum of "
-    "costs. The numbers of these costs are those of the preset.",
+    "Each person moves as recorded people did: again and again they choose the next movement, the "
+    "one with the least sum of costs. The preset, below, has the weights of these costs.",
     "Bodies are hard: two people never overlap, and nobody passes through a wall.",
-    "Time advances in frames of 1/30 s. Positions are those of the middle of the body.",
+    "Time advances in steps (frames) of 1/30 s. Positions are those of the middle of the body.",
     "The run ends when everybody has left, when nobody makes progress any more (it then counts as "
     "stalled), or at the time at which it was stopped.",
     "Smoke, heat, the time until people notice an alarm, and help by staff are in the run only if "
     "they are listed among the parameters or behaviours below.",
-    "The run is one of many possible: another seed gives other people and other chance. Only an "
-    "experiment with many runs shows how much the figures scatter.",
+    "The run is one of many possible: another seed gives other people at other places. Only an "
+    "experiment of many runs shows how much the figures vary by chance.",
 )
 """Assumptions of every run."""
 
@@ -39,9 +41,9 @@ ASSUMPTIONS = (
 LIMITS = (
     "Known limits of the model: crowds before narrow necks stand closer together than measured "
     "ones, so that densities and levels of service there are too unfavourable; people in dense "
-    "closed corridors are slower than measured; fewer people pass wide necks than measured, and "
-    "more pass stairs than handbooks allow. The documentation has the figures (“Known limits”, "
-    "“Verification and validation”)."
+    "closed corridors are slower than measured; fewer people pass wide necks than measured; and "
+    "more pass doors and stairs than handbooks let designers reckon with. The documentation has "
+    "the figures (“Known limits”, “Verification and validation”)."
 )
 """Where the model is known to differ from measured crowds."""
 
@@ -52,24 +54,71 @@ def add_plan(page: Page, measured: Measured) -> None:
     """Add the plan with its doors and exits."""
     plan = measured.plan
     page.section("Plan", "plan")
-    page.text(_said_of_plan(plan))
+    page.lead_in(_said_of_plan(plan))
     add_plan_picture(page, plan)
     if not isinstance(plan, FloorPlan):
-        stairs = [[each.name, each.upper, each.lower] for each in plan.stairs]
-        if stairs:
-            page.table("Stairs", ["name", "from level", "to level"], stairs)
+        _add_ways(page, plan)
     if measured.rooms:
-        add_rooms(page, measured.rooms)
+        add_rooms(page, measured.rooms, plan)
 
 
-def add_rooms(page: Page, rooms: Sequence[Room]) -> None:
+def add_rooms(page: Page, rooms: Sequence[Room], plan: FloorPlan | Building) -> None:
     """Add the rooms of a plan, with the areas that its file states, if it states any."""
-    columns = ["name", "level", "floor (m²)"]
-    rows = [[each.name, each.level, number(each.area)] for each in rooms]
+    levels = level_words(plan)
+    free = (
+        {0: plan.free}
+        if isinstance(plan, FloorPlan)
+        else {each.number: plan.floor_plan_of(each.number).free for each in plan.levels}
+    )
+    columns = ["name", *(["level"] if levels else []), "area (m²)", "free floor (m²)"]
+    rows: list[list[Any]] = [
+        [
+            each.name,
+            *([levels[each.level]] if levels else []),
+            number(each.area),
+            number(shapely.intersection(each.shape, free[each.level]).area),
+        ]
+        for each in rooms
+    ]
     if any(each.stated_area for each in rooms):
         columns.append("area as the file states it (m²)")
         rows = [[*row, number(each.stated_area)] for row, each in zip(rows, rooms, strict=True)]
-    page.table("Rooms", columns, rows)
+    page.table("Rooms; obstacles are no free floor", columns, rows)
+
+
+def _add_ways(page: Page, building: Building) -> None:
+    """Add what joins the levels: stairs, ramps, escalators and lifts."""
+    levels = level_words(building)
+    if building.stairs:
+        page.table(
+            "Stairs, ramps and escalators",
+            ["name", "kind", "from level", "to level", "clear width (m)"],
+            [
+                [
+                    each.name,
+                    type(each).__name__.lower(),
+                    levels[each.upper],
+                    levels[each.lower],
+                    number(each.width, 2),
+                ]
+                for each in building.stairs
+            ],
+        )
+    if building.lifts:
+        page.table(
+            "Lifts",
+            ["name", "levels", "most people in the car", "speed (m/s)", "who uses it"],
+            [
+                [
+                    each.name,
+                    ", ".join(map(str, each.numbers)),
+                    each.capacity,
+                    number(each.speed, 2),
+                    "everybody" if each.everybody else "people who use no stairs",
+                ]
+                for each in building.lifts
+            ],
+        )
 
 
 def add_plan_picture(page: Page, plan: FloorPlan | Building) -> None:
@@ -77,15 +126,22 @@ def add_plan_picture(page: Page, plan: FloorPlan | Building) -> None:
     levels = "" if isinstance(plan, FloorPlan) else ", level by level from the top"
     numbers = {each.name: f"{k}" for k, (each, _) in enumerate(doors_of(plan), 1)}
     page.picture(
-        f"Floor plan with the numbers of doors and exits{levels}",
+        f"Floor plan with the numbers of doors and exits of the table below{levels}",
         picture(plan_figure(plan, PAGE, numbers)),
     )
+    names = level_words(plan)
     rows = [
-        [numbers[each.name], each.name, _KINDS[each.kind], level, number(each.length, 2)]
+        [
+            f"{numbers[each.name]}: {each.name}",
+            _KINDS[each.kind],
+            *([names[level]] if names else []),
+            number(each.length, 2),
+        ]
         for each, level in doors_of(plan)
     ]
-    columns = ["number", "name", "kind", "level", "width (m)"]
-    page.table("Doors and exits", columns, rows)
+    columns = ["number and name", "kind", *(["level"] if names else []), "clear width (m)"]
+    if rows:
+        page.table("Doors and exits", columns, rows)
 
 
 def add_people(page: Page, run: Run, measured: Measured) -> None:
@@ -96,46 +152,43 @@ def add_people(page: Page, run: Run, measured: Measured) -> None:
     first[tracks.person[::-1]] = tracks.frame[::-1]
     people = np.unique(tracks.person)
     later = int((first[people] > 0).sum())
-    page.text(
-        f"{count(len(people), 'person', 'people')} in all; "
-        + (f"{later} of them came in during the run." if later else "all there from the start.")
-    )
+    came = f"{later} of them came in during the run" if later else "all are there from the start"
+    page.text(f"{count(len(people), 'person', 'people')} in all; {came}.")
     add_types(page, run.summary.get("people") or ())
     if "type" not in tracks.person_data:
         return
-    own = people_by(tracks, "type")
+    own, cleared = people_by(tracks, "type"), measured.clearing
     rows = []
     for each in rows_by_type(tracks):
         of = own[each["type"]]
         radii = tracks.radii[of]
         rows.append(
             [
-                str(each["type"]).replace("_", " "),
+                in_words(str(each["type"])),
                 each["people"],
                 f"{each['people'] / len(people):.0%}",
                 number(2 * float(radii.mean()), 2),
                 each["left"],
                 number(each["mean_egress_s"]),
-                number(each["p95_egress_s"]),
+                time_text(cleared.loc[each["type"], "floor"].iloc[0], "t95_s"),
                 number(each["mean_speed_mps"], 2),
             ]
         )
     page.table(
-        "What became of them",
+        "How people of each type got on",
         [
             "type",
             "people",
             "share",
-            "width of the body core (m)",
+            "mean width of the body core (m)",
             "left",
             "mean time inside (s)",
             "95 % are out after (s)",
             "mean speed (m/s)",
         ],
         rows,
-        "The time inside runs from a person's first frame until they leave. People who are still "
-        "inside are later than all others: with any of them there is no mean. The mean speed "
-        "includes the time for which people wait.",
+        "The time inside runs from when a person is first there until they leave. If anybody is "
+        "still inside at the end, there is no mean. The mean speed includes waiting.",
     )
 
 
@@ -148,18 +201,20 @@ def add_types(page: Page, people: Iterable[Mapping[str, Any]]) -> None:
     """
     rows = [
         [
-            str(each["type"]).replace("_", " "),
+            in_words(str(each["type"])),
             each["people"],
             _of_three(each["preferred_mps"], 2),
             _of_three(each["sets_off_s"], 1),
         ]
-        for each in people
+        for each in sorted(people, key=lambda each: str(each["type"]))
     ]
     if rows:
         page.table(
-            "Types of people: least, mean and greatest",
-            ["type", "people", "speed when alone (m/s)", "sets off after the start (s)"],
+            "Types of people",
+            ["type", "people", "speed when alone (m/s)", "sets off after (s)"],
             rows,
+            "Three numbers are the least, the mean and the greatest of the people of a type; one "
+            "is that of all. People set off so many seconds after they are first there.",
         )
 
 
@@ -170,49 +225,15 @@ def add_assumptions(page: Page, run: Run) -> None:
     for each in ASSUMPTIONS:
         page.text(each)
     page.notice(LIMITS)
-    given: dict[str, Any] = dict(summary.get("parameters") or {})
-    rows = [[name.replace("_", " "), said(value)] for name, value in given.items()]
-    if rows:
-        page.table(
-            f"Parameters of the model “{summary.get('model')}”", ["parameter", "value"], rows
-        )
-    add_rules(page, summary.get("rules") or {}, summary)
-
-
-def add_rules(page: Page, rules: Any, summary: Any) -> None:
-    """Add the behaviours of a preset with their numbers."""
-    if not isinstance(rules, dict) or not rules:
-        return
-    settings = rules.get("settings") or {}
-    rows = []
-    for name, weight in (rules.get("terms") or {}).items():
-        rows.append([_words(name), f"weight {weight:g}", _numbers(settings.get(name))])
-    for name in rules.get("tactics") or ():
-        rows.append([_words(name), "tactic", _numbers(settings.get(name))])
-    if rules.get("target_choice"):
-        name = rules["target_choice"]
-        rows.append([_words(name), "choice of exit", _numbers(settings.get(name))])
-    for each in summary.get("behaviors") or ():
-        rows.append([_words(str(each)), "added to the preset", ""])
+    add_parameters(page, str(summary.get("model")), summary.get("parameters") or {})
     changed = summary.get("set") or {}
-    page.table(
-        f"Behaviour of the people: preset “{rules.get('name', '-')}”",
-        ["behaviour", "part", "numbers that the preset sets"],
-        rows,
-        "Numbers changed for this run: "
-        + ("; ".join(f"{name} = {value}" for name, value in changed.items()) or "none")
-        + ". The documentation of mesa-mobility defines each behaviour and compares the preset "
-        "with measured crowds (verification and validation, known limits).",
+    said = "; ".join(f"{name} = {value}" for name, value in changed.items()) or "none"
+    add_rules(
+        page,
+        summary.get("rules") or {},
+        [str(each) for each in summary.get("behaviors") or ()],
+        f"Numbers changed for this run: {said}.",
     )
-
-
-def said(value: Any) -> str:
-    """A value of a parameter as a reader expects it."""
-    if value is None:
-        return "none"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _said_of_plan(plan: FloorPlan | Building) -> str:
@@ -235,11 +256,3 @@ def _of_three(values: Sequence[float], digits: int) -> str:
     if least == most:
         return number(mean, digits)
     return " / ".join(number(each, digits) for each in (least, mean, most))
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")
-
-
-def _numbers(values: Any) -> str:
-    return "; ".join(f"{_words(name)} {said(value)}" for name, value in (values or {}).items())

@@ -1,25 +1,23 @@
-"""Findings of a run: main figures, results over time, and doors."""
+"""Findings of a run: main figures and results over time."""
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.reports.html import Page
-from mesa_mobility.reports.run.pictures import PAGE, drawn, left_out, n_t_curves, queue_curves
-from mesa_mobility.reports.run.texts import count, number
-from mesa_mobility.results.engineering.maps import DENSE, FloorMaps
+from mesa_mobility.reports.run.evidence import FAIL, PASS, checks_of
+from mesa_mobility.reports.run.pictures import PAGE, drawn
+from mesa_mobility.reports.run.places import add_clearing, add_storeys, rows_of, time_text
+from mesa_mobility.reports.run.texts import count, in_words, level_words, number
+from mesa_mobility.results.engineering.maps import DENSE
 from mesa_mobility.results.engineering.measured import Measured
 from mesa_mobility.results.measures.by_type import EVERYBODY
+from mesa_mobility.results.measures.speeds import mean_speed
 from mesa_mobility.results.plots import plot_occupancy, plot_trajectories
 from mesa_mobility.results.run import Run, occupancy_curve, occupancy_curves_by_type
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-_KINDS = {"floor": "the whole floor", "level": "level", "stairs": "stairs", "room": "room"}
 
 
 def add_summary(page: Page, run: Run, measured: Measured) -> None:
@@ -28,18 +26,18 @@ def add_summary(page: Page, run: Run, measured: Measured) -> None:
     page.section("Summary", "summary")
     for text in _objections(summary):
         page.notice(text)
-    times = _cleared(measured)[0]
-    used = [each for each in _doors(measured) if each["people"]]
+    times = rows_of(measured.clearing)[0]
+    used = [each for each in rows_of(measured.doors) if each["people"]]
     rows = [
         ["people", f"{measured.trajectories.people:,}"],
         ["simulated time", number(measured.trajectories.duration, 1, "s")],
         *(
-            [f"time until {share} % of the people are out", f"{_time(times, f't{share}_s')} s"]
+            [f"time until {share} % of the people are out", f"{time_text(times, f't{share}_s')} s"]
             for share in (50, 95, 100)
         ),
         [
             "mean speed of the people, waiting included",
-            number(summary.get("mean_speed_mps"), 2, "m/s"),
+            number(mean_speed(measured.trajectories), 2, "m/s"),
         ],
     ]
     if used:
@@ -47,28 +45,24 @@ def add_summary(page: Page, run: Run, measured: Measured) -> None:
         latest = max(used, key=lambda each: each["last_s"])
         rows += [
             [
-                "door with most people",
+                "door or exit that most people pass",
                 f"{busiest['door']}: {count(int(busiest['people']), 'person', 'people')}, "
-                f"{number(busiest['flow_per_m_s'], 2)} persons/(m s)",
+                f"{number(busiest['flow_per_m_s'], 2)} persons per metre and second",
             ],
             [
-                "door that people passed last",
+                "door or exit that is passed last",
                 f"{latest['door']}: after {number(latest['last_s'], 1, 's')}",
             ],
         ]
-    dense = list(measured.maps[EVERYBODY].values())
-    longest_s = max(float(np.nanmax(own.dense_s, initial=0.0)) for own in dense)
-    rows += [
-        ["greatest density of a cell", number(max(map(_most, dense)), 1, "persons/m²")],
-        [
-            f"longest time of a cell above {DENSE:g} persons/m²",
-            number(longest_s, 0, "s"),
-        ],
-    ]
+    rows += _densest(measured)
+    if passed := [verdict for *_, verdict in checks_of(run) if verdict in (PASS, FAIL)]:
+        said = f"{passed.count(PASS)} of {len(passed)} passed"
+        rows.append(["checks of the run (section “Checks”)", said])
     page.table("Main figures of this run", ["figure", "value"], rows)
     page.text(
         "These are figures of a single run. They have no interval, since one run does not show how "
-        "much chance changes them. Times are those from the start of the simulation."
+        "much they vary by chance. Times count from the start of the simulation. “Definitions” "
+        "says how each figure is measured."
     )
 
 
@@ -87,23 +81,9 @@ def add_results(page: Page, run: Run, measured: Measured) -> None:
             )
         ),
     )
+    add_clearing(page, measured)
     page.table(
-        "Clearing times: when 50, 95 and 100 % of those who were ever there have left for good",
-        ["place", "people", "left", "50 % (s)", "95 % (s)", "100 % (s)"],
-        [
-            [
-                _place(each["kind"], each["place"]),
-                each["people"],
-                each["left"],
-                *(_time(each, f"t{share}_s") for share in (50, 95, 100)),
-            ]
-            for each in _cleared(measured)
-        ],
-        "“> …” where the share falls among people who are still there when the run ends: it takes "
-        "longer than that.",
-    )
-    page.table(
-        "How long people wait in all (they move less than 0.2 m in a second)",
+        "How long each person waits in all; they wait while they move less than 0.2 m in a second",
         ["people of type", "people", "mean (s)", "95 % wait at most (s)", "longest (s)"],
         [
             [
@@ -113,80 +93,14 @@ def add_results(page: Page, run: Run, measured: Measured) -> None:
             ]
             for kind, each in _waiting(measured)
         ],
-        "People who have not set off yet wait as well.",
+        "The time before people set off counts as waiting.",
     )
-    _storeys(page, run)
+    add_storeys(page, run, measured.plan)
+    levels = "" if isinstance(plan, FloorPlan) else ", level by level from the top"
     page.picture(
-        "Ways of all people, coloured by time",
+        f"Ways of all people, coloured by the time at which they were there{levels}",
         drawn(lambda path: plot_trajectories(tracks, plan, path, title=" ", largest=PAGE)),
     )
-
-
-def add_doors(page: Page, measured: Measured) -> None:
-    """Add flows, N-t curves, queues and clogs."""
-    page.section("Doors and exits", "doors")
-    found = _doors(measured)
-    if not found:
-        page.text("The plan has no doors and no exits.")
-        return
-    page.table(
-        "People and flows",
-        [
-            "door or exit",
-            "width (m)",
-            "people",
-            "first (s)",
-            "last (s)",
-            "flow (persons/s)",
-            "specific flow (persons/(m s))",
-        ],
-        [
-            [
-                each["door"],
-                number(each["width_m"], 2),
-                int(each["people"]),
-                number(each["first_s"]),
-                number(each["last_s"]),
-                number(each["flow_per_s"], 2),
-                number(each["flow_per_m_s"], 2),
-            ]
-            for each in found
-        ],
-        "Everybody counts at their first passage. A door that fewer than two people pass has no "
-        "flow.",
-    )
-    page.table(
-        "Queues and clogs",
-        [
-            "door or exit",
-            "people who waited",
-            "mean wait (s)",
-            "longest wait (s)",
-            "longest queue (persons)",
-            "clogs",
-            "clogged in all (s)",
-            "longest clog (s)",
-        ],
-        [
-            [
-                each["door"],
-                int(each["waited"]),
-                number(each["waiting_s"]),
-                number(each["longest_wait_s"]),
-                int(each["most_queue"]),
-                int(each["clogs"]),
-                number(each["clogged_s"]),
-                number(each["longest_clog_s"]),
-            ]
-            for each in found
-        ],
-        "People who have not set off yet are in the queue of their next door.",
-    )
-    if len(measured.n_t):
-        more = left_out(measured)
-        some = f"; {count(more, 'door')} with fewer people not shown" if more else ""
-        page.picture(f"N-t curves: people who have passed each door{some}", n_t_curves(measured))
-        page.picture(f"People who wait before each door{some}", queue_curves(measured))
 
 
 def _objections(summary: Any) -> list[str]:
@@ -213,86 +127,36 @@ def _objections(summary: Any) -> list[str]:
     return said
 
 
-def _cleared(measured: Measured) -> list[dict[str, Any]]:
-    """Rows of the clearing times of everybody; the first is that of the whole floor."""
-    return _rows(measured.clearing)
-
-
-def _doors(measured: Measured) -> list[dict[str, Any]]:
-    """Rows of the doors, of everybody."""
-    return _rows(measured.doors)
-
-
 def _waiting(measured: Measured) -> list[tuple[str, Any]]:
     """Waiting times of everybody, and by type where there are several."""
     every, *types = measured.waiting.iterrows()
     some = types if len(types) > 1 else []
-    return [("everybody", every[1]), *((str(kind).replace("_", " "), own) for kind, own in some)]
+    return [("everybody", every[1]), *((in_words(str(kind)), own) for kind, own in some)]
 
 
-def _rows(table: pd.DataFrame) -> list[dict[str, Any]]:
-    own = table.loc[EVERYBODY].reset_index()
-    return [{str(name): value for name, value in row.items()} for row in own.to_dict("records")]
-
-
-def _time(row: Any, name: str) -> str:
-    """A time to a share, or the bound where it was not reached."""
-    value, censored = row[name], row["censored_s"]
-    if math.isfinite(value):
-        return f"{value:.1f}"
-    return f"> {censored:.1f}" if math.isfinite(censored) else "-"
-
-
-def _place(kind: str, place: str) -> str:
-    return _KINDS[kind] if kind == "floor" else f"{_KINDS[kind]} {place}"
-
-
-def _storeys(page: Page, run: Run) -> None:
-    levels, stairs = run.summary.get("by_level"), run.summary.get("by_stairs")
-    if levels:
-        page.table(
-            "Levels",
-            ["level", "people", "at the start", "at the end", "empty after (s)", "most at a time"],
-            [
-                [
-                    each["level"],
-                    each["people"],
-                    each["at_start"],
-                    each["at_end"],
-                    number(each["clear_s"]),
-                    each["most"],
-                ]
-                for each in levels
-            ],
+def _densest(measured: Measured) -> list[list[str]]:
+    """The greatest density and the longest time above the limit, each with its place."""
+    found, levels = measured.maps[EVERYBODY], level_words(measured.plan)
+    rows = []
+    for what, said, digits, unit in (
+        ("density_max", "greatest density of a cell", 1, "persons/m²"),
+        ("dense_s", f"longest time of a cell above {DENSE:g} persons/m²", 0, "s"),
+    ):
+        value, level, at = max(
+            (
+                (float(values.flat[at]), level, at)
+                for level, own in found.items()
+                for values in [np.nan_to_num(getattr(own, what))]
+                for at in [int(values.argmax())]
+            ),
+            key=lambda each: each[0],
         )
-    if stairs:
-        page.table(
-            "Stairs",
-            [
-                "stairs",
-                "people",
-                "walked down",
-                "walked up",
-                "mean time (s)",
-                "flow at the head (persons/s)",
-                "flow at the foot (persons/s)",
-                "most at a time",
-            ],
-            [
-                [
-                    each["stairs"],
-                    each["people"],
-                    each["down"],
-                    each["up"],
-                    number(each["mean_s"]),
-                    number(each["head_per_s"], 2),
-                    number(each["foot_per_s"], 2),
-                    each["most"],
-                ]
-                for each in stairs
-            ],
-        )
-
-
-def _most(own: FloorMaps) -> float:
-    return float(np.nanmax(own.density_max, initial=0.0))
+        text = number(value, digits, unit)
+        if value > 0.0:
+            grid = found[level].grid
+            row, column = divmod(at, grid.shape[1])
+            x, y = grid.x[column] + grid.cell / 2, grid.y[row] + grid.cell / 2
+            on = f"level {levels[level]}, " if level in levels else ""
+            text += f", at {on}x = {x:.1f} m, y = {y:.1f} m"
+        rows.append([said, text])
+    return rows

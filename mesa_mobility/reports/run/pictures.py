@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Callable
 from itertools import cycle
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from matplotlib.figure import Figure
 
@@ -16,6 +16,7 @@ from mesa_mobility.results.engineering.measured import Measured
 from mesa_mobility.results.plots import TYPE_COLOURS
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
 
 PAGE = 7.6, 5.4
@@ -23,6 +24,15 @@ PAGE = 7.6, 5.4
 
 _MOST_DOORS = 8
 """Doors with a curve; more cannot be told apart."""
+
+_SEEN = 0.05
+"""Share of the greatest number of people below which a curve would lie on the axis."""
+
+_STYLES: list[dict[str, Any]] = [
+    {"color": colour, "linestyle": line}
+    for colour, line in zip(TYPE_COLOURS, cycle(("-", "--", "-.", ":")), strict=False)
+]
+"""Colours and strokes, so that curves differ in black and white, too."""
 
 
 def drawn(plot: Callable[[str | os.PathLike[str]], None]) -> bytes:
@@ -33,37 +43,33 @@ def drawn(plot: Callable[[str | os.PathLike[str]], None]) -> bytes:
         return path.read_bytes()
 
 
-def n_t_curves(measured: Measured) -> bytes:
-    """How many people have passed each door by each time."""
+def n_t_curves(measured: Measured) -> tuple[bytes, int]:
+    """How many people have passed each door by each time, and how many doors are left out."""
+    curves = _curves(measured.n_t)
     figure, axes = _axes()
-    chosen = _most_used(measured)
-    for colour, door in zip(cycle(TYPE_COLOURS), chosen, strict=False):
-        own = measured.n_t[measured.n_t["door"] == door]
-        axes.step(own["time_s"], own["people"], where="post", color=colour, label=door)
+    for style, (door, own) in zip(cycle(_STYLES), curves.items(), strict=False):
+        axes.step(own["time_s"], own["people"], where="post", label=door, **style)
     axes.set_ylabel("people who have passed (N)")
-    return _finished(figure, axes, measured)
+    return _finished(figure, axes, measured), measured.n_t["door"].nunique() - len(curves)
 
 
-def queue_curves(measured: Measured) -> bytes:
-    """How many people wait before each door, second by second."""
+def queue_curves(measured: Measured) -> tuple[bytes, int]:
+    """How many people wait before each door, second by second, and how many doors are left out."""
+    waited = measured.queues[measured.queues["people"] > 0]
+    curves = _curves(measured.queues)
     figure, axes = _axes()
-    chosen = _most_used(measured)
-    for colour, door in zip(cycle(TYPE_COLOURS), chosen, strict=False):
-        own = measured.queues[measured.queues["door"] == door]
-        axes.plot(own["time_s"], own["people"], color=colour, label=door)
-    axes.set_ylabel("people who wait before the door")
-    return _finished(figure, axes, measured)
+    for style, (door, own) in zip(cycle(_STYLES), curves.items(), strict=False):
+        axes.plot(own["time_s"], own["people"], label=door, **style)
+    axes.set_ylabel("people who wait")
+    return _finished(figure, axes, measured), waited["door"].nunique() - len(curves)
 
 
-def left_out(measured: Measured) -> int:
-    """How many doors that people passed have no curve."""
-    return max(measured.n_t["door"].nunique() - _MOST_DOORS, 0)
-
-
-def _most_used(measured: Measured) -> list[str]:
-    """The doors with most passages, in the order of the table of doors."""
-    most = set(measured.n_t["door"].value_counts().index[:_MOST_DOORS])
-    return [str(name) for name in measured.doors.loc["all"].index if name in most]
+def _curves(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
+    """Curves of the doors with the greatest numbers of people, by door, in the table's order."""
+    most = table.groupby("door", sort=False)["people"].max()
+    seen = most[(most > 0) & (most >= _SEEN * most.max())]
+    shown = seen.sort_values(ascending=False, kind="stable").index[:_MOST_DOORS]
+    return {str(door): own for door, own in table.groupby("door", sort=False) if door in shown}
 
 
 def _axes() -> tuple[Figure, Axes]:
@@ -79,5 +85,5 @@ def _finished(figure: Figure, axes: Axes, measured: Measured) -> bytes:
     axes.set_xlim(0.0, max(measured.trajectories.duration, 1e-9) * 1.02)
     axes.set_ylim(bottom=0.0)
     if axes.get_legend_handles_labels()[1]:
-        axes.legend(frameon=False, fontsize=9)
+        axes.legend(frameon=False, fontsize=9, handlelength=3.0)
     return picture(figure)

@@ -8,8 +8,9 @@ from datetime import UTC, datetime
 
 from mesa_mobility.reports.html import Page
 from mesa_mobility.reports.run.basis import add_assumptions, add_people, add_plan
+from mesa_mobility.reports.run.doors import add_doors
 from mesa_mobility.reports.run.evidence import add_checks, add_definitions, add_repeating
-from mesa_mobility.reports.run.findings import add_doors, add_results, add_summary
+from mesa_mobility.reports.run.findings import add_results, add_summary
 from mesa_mobility.reports.run.service import add_service
 from mesa_mobility.results.engineering.measured import Measured
 from mesa_mobility.results.run import Run

@@ -36,33 +36,65 @@ def add_service(page: Page, measured: Measured, of: str = "") -> None:
     cell = next(iter(found.values())).grid.cell
     page.text(
         "Levels of service say what a density means for people who walk (J. J. Fruin, Pedestrian "
-        "Planning and Design, 1971): from A, free to walk, to F, a standstill. Densities are those "
-        f"of Voronoi areas in cells of {cell:g} m, measured every {measured.every:g} s. They begin "
-        "with the run, so that people who sit or stand before they set off count as well."
+        "Planning and Design, 1971): from A, free to walk, to F, a standstill. Densities are "
+        f"measured every {measured.every:g} s in cells of {cell:g} m (see “Definitions”), from the "
+        "start on: people who have not set off yet count as well."
     )
     page.table(
-        "Fruin's levels of service for walkways, and the floor on which the greatest density "
-        "reaches them",
-        ["level", "density (persons/m²)", "floor (m²)", "share of the floor"],
+        "Levels of service for walkways, and how much of the floor is in each at its greatest "
+        "density",
+        ["level of service", "density (persons/m²)", "floor (m²)", "share of the floor"],
         _areas(found),
-        "Limits are published as 35, 25, 15, 10 and 5 square feet a person. People on stairs are "
-        "on no floor.",
+        "Fruin publishes the limits as 35, 25, 15, 10 and 5 square feet a person."
+        + ("" if isinstance(plan, FloorPlan) else " Stairs are not part of the floor."),
     )
     _map(
         page,
         measured,
         found,
         "density_max",
-        "Level of service at the greatest density of each cell",
+        "Level of service at the greatest density of each cell during the run",
     )
     at, said = _moment(measured)
     now = maps(tracks, plan, cell=cell, start=at, end=at)
-    _map(page, measured, now, "density_max", f"Level of service after {at:.1f} s, {said}")
+    _map(
+        page,
+        measured,
+        now,
+        "density_max",
+        f"Level of service after {at:.1f} s, {said}",
+        "no density, since nobody is there or walls separate the place from everybody",
+        f"level of service after {at:.1f} s",
+    )
     page.text(_congestion(measured, found))
     if any(np.nanmax(own.dense_s, initial=0.0) > 0.0 for own in found.values()):
-        _map(page, measured, found, "dense_s", f"Time above {DENSE:g} persons/m²")
-    _map(page, measured, found, "people", "Usage: number of people who were ever in each cell")
-    _map(page, measured, found, "speed", "Mean speed of the people in each cell")
+        limit = f"above {DENSE:g} persons/m²"
+        _map(
+            page,
+            measured,
+            found,
+            "dense_s",
+            f"Time for which each cell was {limit}",
+            "never",
+            f"time {limit} (s)",
+        )
+    _map(
+        page,
+        measured,
+        found,
+        "people",
+        "Usage: number of people who were ever in each cell",
+        "nobody",
+        "people who were ever there",
+    )
+    _map(
+        page,
+        measured,
+        found,
+        "speed",
+        f"Mean speed of the people in each cell, measured every {measured.every:g} s",
+        "nobody was there",
+    )
 
 
 def _moment(measured: Measured) -> tuple[float, str]:
@@ -100,18 +132,27 @@ def _congestion(measured: Measured, found: Mapping[int, FloorMaps]) -> str:
         dense += float(floor[np.nan_to_num(own.dense_s) > 0.0].sum())
         lasting += float(floor[np.nan_to_num(own.dense_s) > LASTING * duration].sum())
     return (
-        f"IMO MSC.1/Circ.1533 calls more than {DENSE:g} persons/m² a congestion where it lasts for "
-        f"more than a tenth of the evacuation. In this run {dense:.1f} m² were ever above that "
-        f"density, and {lasting:.1f} m² for more than a tenth of its {duration:.0f} s."
+        f"Congestion (IMO MSC.1/Circ.1533): more than {DENSE:g} persons/m² for more than a tenth "
+        f"of the evacuation. {dense:.1f} m² of floor were above this density at some time, and "
+        f"{lasting:.1f} m² for more than a tenth of the {duration:.1f} s. So there is "
+        f"{'' if lasting > 0.0 else 'no '}congestion in this run."
     )
 
 
 def _map(
-    page: Page, measured: Measured, found: Mapping[int, FloorMaps], what: str, caption: str
+    page: Page,
+    measured: Measured,
+    found: Mapping[int, FloorMaps],
+    what: str,
+    caption: str,
+    white: str = "",
+    label: str = "",
 ) -> None:
     tracks, plan = measured.trajectories, measured.plan
     levels = "" if isinstance(plan, FloorPlan) else ", level by level from the top"
     page.picture(
-        caption + levels,
-        drawn(lambda path: plot_map(found, tracks, plan, path, what=what, largest=PAGE)),
+        caption + levels + (f"; white: {white}" if white else ""),
+        drawn(
+            lambda path: plot_map(found, tracks, plan, path, what=what, label=label, largest=PAGE)
+        ),
     )

@@ -61,6 +61,7 @@ def plot_map(
     *,
     what: str = "density_max",
     service: str = "walkway",
+    label: str = "",
     title: str = "",
     largest: tuple[float, float] = LARGEST,
 ) -> None:
@@ -76,6 +77,7 @@ def plot_map(
         path: picture to write; its suffix chooses the format (.png, .svg, .pdf).
         what: an attribute of `FloorMaps`, such as "dense_s".
         service: kind of the levels of service, "walkway", "stairs" or "queue".
+        label: of the scale of colours; by default what the map is of.
         title: first line of the picture.
         largest: width and height of the picture, inches.
 
@@ -100,7 +102,7 @@ def plot_map(
     # Letters stand in the bar of levels of service.
     aspect = 15 if what.startswith("density") else 30
     bar = figure.colorbar(colours, ax=figure.axes, shrink=0.8, aspect=aspect, pad=0.02)
-    bar.set_label(_STYLES[what].label)
+    bar.set_label(label or _STYLES[what].label)
     if what.startswith("density"):
         limits = colours.norm.boundaries  # type: ignore[attr-defined]
         bar.set_ticks(list(limits[1:-1]))

@@ -26,7 +26,7 @@ WAITING_MPS = 0.2
 WINDOW_S = 1.0
 """Seconds over which it is measured, about a gait cycle: the sway of the body counts less."""
 
-COLUMNS = ("waited", "waiting_s", "longest_wait_s", "mean_queue", "most_queue")
+COLUMNS = ("waited", "waiting_s", "longest_wait_s", "mean_queue", "most_queue", "most_queue_s")
 
 
 def waiting_rows(trajectories: Tracks, slower_than: float = WAITING_MPS) -> NDArray[np.int64]:
@@ -107,7 +107,8 @@ def queues(
         A row for each gate and exit, by name: ``waited``, the people who waited before it for a
         second or more; ``waiting_s``, the mean of their seconds, and ``longest_wait_s``, both nan
         if nobody waited; ``mean_queue`` and ``most_queue``, the mean over the seconds of the run
-        and the greatest number of people in the queue, as `queue_lengths` has it.
+        and the greatest number of people in the queue, as `queue_lengths` has it; and
+        ``most_queue_s``, the second from which it was first that long, nan if nobody waited.
 
     Raises:
         ResultsError: as `queue_lengths`.
@@ -129,6 +130,9 @@ def queues(
                 "longest_wait_s": times.max() if len(times) else np.nan,
                 "mean_queue": len(own) / seconds,
                 "most_queue": int(lengths.max(initial=0)),
+                "most_queue_s": (
+                    lengths.argmax() / trajectories.frame_rate if len(lengths) else np.nan
+                ),
             }
         )
     return pd.DataFrame(table, columns=["door", *COLUMNS]).set_index("door")

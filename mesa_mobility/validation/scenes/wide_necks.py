@@ -103,8 +103,8 @@ def draw(figures: dict[str, Any]) -> Figure:
         each.plot(list(MEASURED), theirs, **charts.MEASURED.line)
         each.plot(figures["width"], charts.numbers(figures[name]), **charts.OURS.line)
         each.set_xlabel("width of the neck (m)")
-    axes[0].set_ylabel("flow (1/s)")
-    axes[1].set_ylabel("density in front (1/m\u00b2)")
+    axes[0].set_ylabel("flow (persons/s)")
+    axes[1].set_ylabel("density in front (persons/m\u00b2)")
     charts.finish(axes)
     return figure
 

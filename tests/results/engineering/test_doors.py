@@ -180,14 +180,15 @@ def test_waiting_is_counted_second_by_second(walk, hall):
     assert [n for _, n in lengths["middle"]] == [1, 1, 1, 0, 0, 0, 0, 0, 0]
     assert [n for _, n in lengths["east"]] == [0, 0, 0, 0, 1, 1, 0, 0, 0]
     table = queues(tracks, hall)
-    assert table.loc["middle"].tolist() == [1, 3.0, 3.0, pytest.approx(3 / 9), 1]
-    assert table.loc["east"].tolist() == [1, 2.0, 2.0, pytest.approx(2 / 9), 1]
+    assert table.loc["middle"].tolist() == [1, 3.0, 3.0, pytest.approx(3 / 9), 1, 0.0]
+    assert table.loc["east"].tolist() == [1, 2.0, 2.0, pytest.approx(2 / 9), 1, 4.0]
 
 
 def test_nobody_waits_where_nobody_is(hall):
     nobody = Trajectories([], [], [], [], [], last_frame=30)
     assert doors(nobody, hall).people.tolist() == [0, 0]
     assert queues(nobody, hall).most_queue.tolist() == [0, 0]
+    assert queues(nobody, hall).most_queue_s.isna().all()
     assert clogging(nobody, hall).clogs.tolist() == [0, 0]
 
 
