@@ -211,7 +211,8 @@ def test_wheelchairs_and_sticks_are_drawn_near_and_far(mixed):
 def test_people_who_come_later_are_drawn_too(page):
     pixels = """(places) => {
       const { stage } = state, gl = stage.renderer.getContext(), person = present()[0];
-      const [x, y] = person.track.at(state.frame), at = (k) => [x - k % 20 / 4, y - 1 + k / 200, 0, 0];
+      const [x, y] = person.track.at(state.frame);
+      const at = (k) => [x - k % 20 / 4, y - 1 + k / 200, 0, 0];
       const people = places.map((k) => ({ ...person, track: { at: () => at(k) } }));
       stage.still = true;
       stage.draw(people, state.frame, -1);

@@ -291,12 +291,11 @@ def _faces(rings: int, around: int, ends: tuple[str, str]) -> list[tuple[int, in
             low, high = ring * around, (ring + 1) * around
             faces += [(low + a, low + b, high + b), (low + a, high + b, high + a)]
     middle = rings * around
-    for end, ring in zip(
-        ends, (range(around)[::-1], range((rings - 1) * around, rings * around)), strict=True
-    ):
+    around_ends = (range(around)[::-1], range((rings - 1) * around, rings * around))
+    for end, own in zip(ends, around_ends, strict=True):
         if end == FLAT:
-            faces += [(ring[0], ring[a], ring[a + 1]) for a in range(1, around - 1)]
+            faces += [(own[0], own[a], own[a + 1]) for a in range(1, around - 1)]
         elif end in (MIDDLE, POINT):
-            faces += [(middle, ring[a - 1], ring[a]) for a in range(around)]
+            faces += [(middle, own[a - 1], own[a]) for a in range(around)]
             middle += 1
     return faces
