@@ -44,7 +44,7 @@ PLACE_STEP, TURN_STEP = 0.001, 0.001
 
 SHARE_STEP = 0.001
 
-STAGE_SCRIPTS = "bundle", "poses", "footing", "bodies", "troop", "scenery", "stage"
+STAGE_SCRIPTS = "bundle", "poses", "footing", "bodies", "copies", "troop", "scenery", "stage"
 """Files of the viewer that draw a crowd in three dimensions, in the order in which they load."""
 
 PLAN_SCRIPTS = (

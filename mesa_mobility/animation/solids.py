@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
+from shapely.geometry.polygon import orient
 
 from mesa_mobility.animation.meshes import WALL, WALL_HEIGHT, Mesh, Surface, flat, joined, upright
 
@@ -69,8 +70,9 @@ def solids(
 
 
 def drawn_solid(solid: Solid) -> dict[str, Any]:
-    """A solid as JSON takes it: rings, metres, the outer one first."""
-    rings = (solid.area.exterior, *solid.area.interiors)
+    """A solid as JSON takes it: rings, metres, the outer one first; it lies to their left."""
+    area = orient(solid.area)
+    rings = (area.exterior, *area.interiors)
     points = [np.round(shapely.get_coordinates(each), 3).tolist() for each in rings]
     return {"kind": solid.kind, "rings": points, "top": solid.top}
 

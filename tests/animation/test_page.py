@@ -199,7 +199,7 @@ def test_wheelchairs_and_sticks_are_drawn_near_and_far(mixed):
     # From far away people have no limbs and no sticks, but they still sit.
     mixed.evaluate("Object.assign(state.stage, { detail: DETAIL.length - 1 }); null")
     mixed.evaluate(stand, 40)
-    assert mixed.evaluate(counts) == {"seated_far": 1, "wheelchair_far": 1, "person_pawn": 1}
+    assert mixed.evaluate(counts) == {"seated_far": 1, "wheelchair_far": 1, "person_speck": 1}
     # Through the eyes of somebody who sits.
     mixed.select_option("#person", "0")
     mixed.select_option("#camera", "eyes")
@@ -209,15 +209,90 @@ def test_wheelchairs_and_sticks_are_drawn_near_and_far(mixed):
 
 @pytest.mark.slow
 def test_people_who_come_later_are_drawn_too(page):
-    triangles = """(count) => {
-      const { stage } = state, people = Array(count).fill(present()[0]);
+    pixels = """(places) => {
+      const { stage } = state, gl = stage.renderer.getContext(), person = present()[0];
+      const [x, y] = person.track.at(state.frame);
+      const at = (k) => [x - k % 20 / 4, y - 1 + k / 200, 0, 0];
+      const people = places.map((k) => ({ ...person, track: { at: () => at(k) } }));
+      stage.still = true;
       stage.draw(people, state.frame, -1);
-      return stage.renderer.info.render.triangles;
+      const { width, height } = stage.canvas, drawn = new Uint8Array(4 * width * height);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, drawn);
+      return Array.from(drawn);
     }"""
     page.evaluate("show(30)")
-    few, more, most = (page.evaluate(triangles, count) for count in (100, 150, 400))
-    assert more > few
-    assert most - more == 5 * (more - few)
+    none, few, more = (
+        np.array(page.evaluate(pixels, list(range(count)))).reshape(-1, 4) for count in (0, 70, 400)
+    )
+
+    def covered(drawn):
+        return (drawn != none).any(axis=1).sum()
+
+    assert 0 < covered(few) < covered(more)
+    # More copies than an instance holds, and no more of them than people.
+    assert page.evaluate("state.stage.troops.shadows.count") == 400
+    assert (
+        page.evaluate(
+            "Object.values(state.stage.troops.counts()).reduce((all, each) => all + each, 0)"
+        )
+        == 400
+    )
+
+
+@pytest.mark.slow
+def test_triangles_are_put_in_order_for_four_corners_at_a_time(page):
+    """Counted apart from the page: a miss works out the next four corners, 64 are known."""
+    before, after = page.evaluate(
+        """() => {
+          const { triangles } = state.stage.troops.named.person_near.source;
+          return [Array.from(triangles), inFours(triangles)];
+        }"""
+    )
+
+    def turned(corners):
+        rows = np.array(corners).reshape(-1, 3)
+        return sorted(tuple(np.roll(row, -int(row.argmin()))) for row in rows)
+
+    def worked_out(corners):
+        known, count = {}, 0
+        for k, corner in enumerate(corners):
+            if known.get(corner % 64) != corner:
+                count += 1
+                known |= {each % 64: each for each in reversed(corners[k : k + 4])}
+        return count
+
+    assert turned(before) == turned(after)
+    assert worked_out(after) < 0.45 * worked_out(before)
+
+
+@pytest.mark.slow
+def test_thousands_of_bodies_fit_into_a_texture(page):
+    width, height = page.evaluate(
+        "(({ width, height }) => [width, height])(sheet(2 * BONES, 10000).image)"
+    )
+    # WebGL 2 promises 2048.
+    assert max(width, height) <= 2048
+    assert width * height >= 10000 * 44
+
+
+@pytest.mark.slow
+def test_without_webgl_the_plan_is_left(playwright, browser_program, run, plan, tmp_path):
+    path, trouble = tmp_path / "replay.html", []
+    write_page(run, plan, path=path, title="plan only")
+    browser = playwright.chromium.launch(
+        executable_path=browser_program, args=["--no-sandbox", "--disable-3d-apis"]
+    )
+    page = browser.new_page()
+    page.on("pageerror", lambda error: trouble.append(str(error)))
+    page.goto(path.as_uri())
+    page.wait_for_selector("body[data-ready=yes]", timeout=60_000)
+    assert page.input_value("#camera") == "plan"
+    assert "need WebGL" in page.inner_text("#flat")
+    page.evaluate("show(30)")
+    assert page.inner_text("#said").startswith("1.00 of")
+    assert page.evaluate("state.plan.drawn") > 0
+    browser.close()
+    assert trouble == []
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,28 +14,20 @@ from mesa_mobility.bodies.skeleton import ANKLE_HEIGHT, HEEL_BACK, JOINT, OFFSET
 AROUND = 10
 """Vertices round a tube."""
 
-FEWER_AROUND = 4
-"""The same of a figure seen from afar."""
-
-_FEWER_RINGS = {
-    "hips": (0, 2),
-    "torso": (1, 5, 6),
-    "neck": (),
-    "head": (1, 4, 7),
-    "hair": (0, 3, 5),
-    "leg": (0, 4, 8),
-    "foot": (0, 3),
-    "sleeve": (2, 5),
-    "forearm": (0, 3),
-    "hand": (0, 2),
-}
-"""Those of each tube that are left of a figure seen from afar."""
+MIDDLE, FLAT, OPEN, POINT = "middle", "flat", "open", "point"
+"""How an end of a tube is closed: by triangles round its middle, by as few as it takes, not at all
+since other parts hide it, or by a point in place of the last ring."""
 
 Ring = tuple[tuple[float, float, float], float, float, dict[str, float]]
 """Centre in metres from a joint, radii along and across, and the joints that move it."""
 
 Tube = tuple[list[Ring], int, str]
 """Rings, the axis along which they follow each other, and which of ``PARTS`` they are."""
+
+Coarse = tuple[tuple[int, ...], int, tuple[str, str]]
+"""Of a tube the rings that are left, vertices round it, and how its ends are closed."""
+
+_Mesh = tuple[NDArray, NDArray, NDArray, NDArray, NDArray]
 
 
 @dataclass(frozen=True)
@@ -72,18 +64,12 @@ def human_figure(around: int = AROUND, more: Sequence[Tube] = ()) -> Figure:
     return joined([*(tube for _, tube in _tubes()), *more], around)
 
 
-def distant_figure() -> Figure:
-    """The figure of an adult seen from afar: fewer rings, fewer corners."""
-    fewer = [
-        ([rings[k] for k in _FEWER_RINGS[name]], axis, part)
-        for name, (rings, axis, part) in _tubes()
-        if _FEWER_RINGS[name]
-    ]
-    return joined(fewer, FEWER_AROUND)
+def pawn(small: bool = False) -> Figure:
+    """Somebody without limbs: shoulders and a head, feet at the origin.
 
-
-def pawn() -> Figure:
-    """Somebody without limbs, as seen from far away: shoulders and a head, feet at the origin."""
+    Args:
+        small: for somebody who is few pixels high.
+    """
 
     def rings(*each: tuple[float, float, float]) -> list[Ring]:
         return [((0.0, 0.0, z), deep, wide, {"pelvis": 1}) for z, deep, wide in each]
@@ -93,6 +79,8 @@ def pawn() -> Figure:
     head = rings((1.5, 0.04, 0.04), (1.63, 0.10, 0.08), (1.72, 0.06, 0.05))
     hair = rings((1.64, 0.09, 0.085), (1.72, 0.08, 0.07), (1.76, 0.03, 0.03))
     parts = ((legs, "trousers"), (body, "top"), (head, "skin"), (hair, "hair"))
+    if small:
+        return _together([(_tube(each[:2], 2, 4, (OPEN, FLAT)), part) for each, part in parts])
     return joined([(each, 2, part) for each, part in parts], 6)
 
 
@@ -115,11 +103,24 @@ def _tubes() -> list[tuple[str, Tube]]:
     return tubes
 
 
-def joined(tubes: list[Tube], around: int) -> Figure:
+def joined(tubes: Sequence[Tube], around: int) -> Figure:
     """One mesh of tubes, each with so many vertices round it."""
+    return _together([(_tube(rings, axis, around), part) for rings, axis, part in tubes])
+
+
+def coarse_figure(coarse: Mapping[str, Coarse]) -> Figure:
+    """The figure of an adult of the parts that are named, each as coarse as is said."""
+    made = []
+    for name, (rings, axis, part) in _tubes():
+        if name in coarse:
+            kept, around, ends = coarse[name]
+            made.append((_tube([rings[k] for k in kept], axis, around, ends), part))
+    return _together(made)
+
+
+def _together(made: list[tuple[_Mesh, str]]) -> Figure:
     vertices, normals, triangles, joints, weights, parts, count = [], [], [], [], [], [], 0
-    for rings, axis, part in tubes:
-        v, n, t, j, w = _tube(rings, axis, around)
+    for (v, n, t, j, w), part in made:
         vertices.append(v)
         normals.append(n)
         triangles.append(t + count)
@@ -248,28 +249,28 @@ def _hand(side: str) -> list[Ring]:
 
 
 def _tube(
-    rings: list[Ring], axis: int, around: int
-) -> tuple[NDArray, NDArray, NDArray, NDArray, NDArray]:
-    """Vertices, normals, triangles, joints and weights of a closed tube along an axis."""
+    rings: list[Ring], axis: int, around: int, ends: tuple[str, str] = (MIDDLE, MIDDLE)
+) -> _Mesh:
+    """Vertices, normals, triangles, joints and weights of a tube along an axis."""
     angle = 2.0 * np.pi * np.arange(around) / around
     across = [each for each in range(3) if each != axis]
     if axis == 0:
         across.reverse()  # radii are given along z first, then y
     vertices, joints, weights = [], [], []
-    for centre, along, aside, moved in rings:
-        ring = np.tile(np.array(centre, dtype=np.float64), (around, 1))
-        ring[:, across[0]] += along * np.cos(angle)
-        ring[:, across[1]] += aside * np.sin(angle)
+    middles = [rings[k] for k in (0, -1) if ends[k] in (MIDDLE, POINT)]
+    whole = rings[:-1] if ends[1] == POINT else rings
+    for count, each in [*((around, ring) for ring in whole), *((1, ring) for ring in middles)]:
+        centre, along, aside, moved = each
+        ring = np.tile(np.array(centre, dtype=np.float64), (count, 1))
+        if count > 1:
+            ring[:, across[0]] += along * np.cos(angle)
+            ring[:, across[1]] += aside * np.sin(angle)
         vertices.append(ring)
         names, shares = list(moved), list(moved.values())
-        joints.append(np.tile([JOINT[n] for n in names] + [0] * (4 - len(names)), (around, 1)))
-        weights.append(np.tile(shares + [0.0] * (4 - len(shares)), (around, 1)))
-    for place in (0, -1):  # the ends are closed by their middles
-        vertices.append(np.array([rings[place][0]], dtype=np.float64))
-        joints.append(joints[place if place == 0 else len(rings) - 1][:1])
-        weights.append(weights[place if place == 0 else len(rings) - 1][:1])
+        joints.append(np.tile([JOINT[n] for n in names] + [0] * (4 - len(names)), (count, 1)))
+        weights.append(np.tile(shares + [0.0] * (4 - len(shares)), (count, 1)))
     points = np.concatenate(vertices)
-    triangles = np.array(_faces(len(rings), around))
+    triangles = np.array(_faces(len(whole), around, ends))
     corner = points[triangles]
     facing = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     outward = corner.mean(axis=1) - points.mean(axis=0)
@@ -282,16 +283,19 @@ def _tube(
     return points, normals, triangles, np.concatenate(joints), np.concatenate(weights)
 
 
-def _faces(rings: int, around: int) -> list[tuple[int, int, int]]:
+def _faces(rings: int, around: int, ends: tuple[str, str]) -> list[tuple[int, int, int]]:
     faces = []
     for ring in range(rings - 1):
         for a in range(around):
             b = (a + 1) % around
             low, high = ring * around, (ring + 1) * around
             faces += [(low + a, low + b, high + b), (low + a, high + b, high + a)]
-    first, last = rings * around, rings * around + 1
-    end = (rings - 1) * around
-    for a in range(around):
-        b = (a + 1) % around
-        faces += [(first, b, a), (last, end + a, end + b)]
+    middle = rings * around
+    around_ends = (range(around)[::-1], range((rings - 1) * around, rings * around))
+    for end, own in zip(ends, around_ends, strict=True):
+        if end == FLAT:
+            faces += [(own[0], own[a], own[a + 1]) for a in range(1, around - 1)]
+        elif end in (MIDDLE, POINT):
+            faces += [(middle, own[a - 1], own[a]) for a in range(around)]
+            middle += 1
     return faces

@@ -11,8 +11,12 @@ import numpy as np
 
 from mesa_mobility.animation.figures.aids import aid_figure
 from mesa_mobility.animation.figures.figure import (
+    FLAT,
+    OPEN,
+    POINT,
+    Coarse,
     Figure,
-    distant_figure,
+    coarse_figure,
     human_figure,
     pawn,
     rest_positions,
@@ -24,6 +28,29 @@ from mesa_mobility.bodies.skeleton import JOINT
 
 NEAR_AROUND = 8
 """Vertices round a limb of somebody near."""
+
+_FAR: dict[str, Coarse] = {
+    "hips": ((0, 2), 4, (FLAT, OPEN)),
+    "torso": ((1, 5, 6), 4, (OPEN, FLAT)),
+    "head": ((1, 4, 7), 4, (FLAT, FLAT)),
+    "hair": ((0, 3, 5), 4, (FLAT, FLAT)),
+    "leg": ((0, 4, 8), 4, (OPEN, OPEN)),
+    "foot": ((0, 3), 4, (FLAT, FLAT)),
+    "sleeve": ((2, 5), 4, (FLAT, OPEN)),
+    "forearm": ((0, 3), 4, (OPEN, FLAT)),
+    "hand": ((0, 2), 4, (OPEN, FLAT)),
+}
+_SMALL: dict[str, Coarse] = {
+    "torso": ((1, 5, 6), 4, (OPEN, FLAT)),
+    "head": ((1, 4), 4, (OPEN, OPEN)),
+    "hair": ((0, 4), 4, (OPEN, FLAT)),
+    "leg": ((0, 4, 8), 3, (OPEN, OPEN)),
+    "foot": ((0, 3), 3, (FLAT, POINT)),
+    "sleeve": ((2, 5), 3, (FLAT, OPEN)),
+    "forearm": ((0, 3), 3, (OPEN, OPEN)),
+    "hand": ((1, 2), 3, (OPEN, POINT)),
+}
+"""Parts of people who are far away, and of those who are few pixels high."""
 
 _CARRIED = ("cane", "crutches", "walking_frame")
 _BARS = {"near": 6, "far": 3}
@@ -37,8 +64,13 @@ def jointed_figures() -> dict[str, Figure]:
     """People and what they hold, by name, in the pose of the neutral skeleton.
 
     The pelvis is at the origin. Names end with the level of detail: ``person_near``, ``cane_far``.
+    ``person_small`` shows a person who is few pixels high.
     """
-    found = {"person_near": human_figure(NEAR_AROUND), "person_far": distant_figure()}
+    found = {
+        "person_near": human_figure(NEAR_AROUND),
+        "person_far": coarse_figure(_FAR),
+        "person_small": coarse_figure(_SMALL),
+    }
     for level, around in _BARS.items():
         found |= {f"{aid}_{level}": aid_figure(aid, around) for aid in _CARRIED}
     return found
@@ -50,10 +82,10 @@ def rigid_figures() -> dict[str, Figure]:
     Names that end with ``_near`` are of detailed figures, those with ``_far`` of coarse ones.
     ``seated_near`` and ``seated_far`` show a person who sits in a wheelchair, without the
     wheelchair. ``wheelchair_near`` and ``wheelchair_far`` show the wheelchair alone.
-    ``person_pawn`` shows a person without limbs.
+    ``person_pawn`` shows a person without limbs, ``person_speck`` one who is few pixels high.
     """
-    people = {"near": human_figure(NEAR_AROUND), "far": distant_figure()}
-    found = {"person_pawn": pawn()}
+    people = {"near": human_figure(NEAR_AROUND), "far": coarse_figure(_FAR)}
+    found = {"person_pawn": pawn(), "person_speck": pawn(small=True)}
     for level, person in people.items():
         found[f"seated_{level}"] = _seated(person)
         found[f"wheelchair_{level}"] = _seated(aid_figure("wheelchair", _WHEELS[level]))

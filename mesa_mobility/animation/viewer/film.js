@@ -15,7 +15,7 @@ async function film(asked) {
   document.body.style.visibility = "hidden";
   element("camera").value = "orbit";
   element("colour").value = asked.colour;
-  Object.assign(stage, { detail: 0, sharp: SHARP });
+  Object.assign(stage, { still: true, sharp: SHARP });
   stage.resize(true);
   stage.fit();
   stage.scenery.setGlassy(asked.glass);

@@ -135,7 +135,9 @@ function drawnLegend({ label, low, high, names, steps }) {
 }
 
 function showScale() {
-  const [metres, long] = state.plan.scaleBar();
+  const [metres, long] = state.plan.scaleBar(), key = `${metres} ${long}`;
+  if (state.scale === key) return;
+  state.scale = key;
   element("scale").firstElementChild.textContent = `${metres} m`;
   element("scale").lastElementChild.style.width = `${long}px`;
 }

@@ -24,17 +24,22 @@ function shown() {
 // A picture at which somebody looks for a while has all its detail.
 function draw(still = false) {
   Object.assign(state, { still, drawn: performance.now() });
-  state.stage.still = still;
+  if (state.stage) state.stage.still = still;
   const people = inPlan() ? peopleOn(storeyShown()) : shown(), map = mapNow();
   colour(people);
   if (inPlan()) drawPlan(people, map);
   else drawStage(people, map);
   const seconds = state.frame / RATE;
   element("time").value = seconds;
-  element("said").textContent = `${seconds.toFixed(2)} of ${(state.last / RATE).toFixed(1)} s, ${people.length} there`;
-  element("why").textContent = why();
+  tell("said", `${seconds.toFixed(2)} of ${(state.last / RATE).toFixed(1)} s, ${people.length} there`);
+  tell("why", why());
   if (pressed("charted")) drawCurves(seconds);
   showLegends();
+}
+
+// A text that is written anew is laid out anew, even if it is the same.
+function tell(id, text) {
+  if (element(id).textContent !== text) element(id).textContent = text;
 }
 
 function drawPlan(people, map) {
@@ -136,10 +141,9 @@ function listen() {
   element("full").onclick = fill;
   element("time").oninput = () => show(Number(element("time").value) * RATE);
   element("camera").onchange = look;
-  element("walls").onchange = () => state.stage.scenery.setGlassy(element("walls").value === "glass");
   element("storey").onchange = () => {
     state.below = Number(element("storey").value);
-    state.stage.scenery.cut(state.below);
+    if (state.stage) state.stage.scenery.cut(state.below);
     showFloor();
   };
   fold("charted", ["curves", "passed"]);
@@ -153,6 +157,11 @@ function listen() {
   const scrub = (event) => { if (event.buttons & 1) show(state.curves.at(event.clientX) * RATE); };
   element("curves").addEventListener("pointerdown", scrub);
   element("curves").addEventListener("pointermove", scrub);
+  if (state.stage) listenToStage();
+}
+
+function listenToStage() {
+  element("walls").onchange = () => state.stage.scenery.setGlassy(element("walls").value === "glass");
   let down = null;
   const canvas = state.stage.canvas;
   canvas.addEventListener("pointerdown", (event) => { down = [event.clientX, event.clientY]; });
@@ -213,13 +222,27 @@ function offerStoreys(storeys) {
   for (const { name, below } of cuts) element("storey").add(new Option(`up to ${name}`, below));
 }
 
+// Where a browser draws nothing in three dimensions, the plan is left.
+function stageOrNone({ floor }) {
+  try {
+    const stage = new Stage(element("view"), figureOf(state.run));
+    stage.setFloor(floor, PAPER);
+    return stage;
+  } catch (error) {
+    if (ASKED) throw error;
+    element("flat").hidden = false;
+    element("camera").value = "plan";
+    for (const part of ["camera", "walls", "add", "along", "load"]) element(part).disabled = true;
+    return null;
+  }
+}
+
 async function open() {
   state.run = await unbundle(CONTENT);
   const { header } = state.run;
   state.people = peopleOf(state.run);
   Object.assign(state, { first: header.first, last: header.last, frame: header.first });
-  state.stage = new Stage(element("view"), figureOf(state.run));
-  state.stage.setFloor(header.floor, PAPER);
+  state.stage = stageOrNone(header);
   state.plan = new PlanView(element("plan"), { click: clickPlan });
   state.curves = new Curves(element("curves"), header.doors, state.first / RATE, state.last / RATE);
   Object.assign(element("time"), { min: state.first / RATE, max: state.last / RATE });
@@ -227,6 +250,7 @@ async function open() {
   offerStoreys(header.floor.storeys || []);
   if (header.types.length < 2) element("colour").remove(2);
   listen();
+  if (!state.stage) look();
   if (ASKED) {
     await film(ASKED);
     return;

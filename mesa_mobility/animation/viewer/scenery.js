@@ -12,7 +12,7 @@ const LAYER_VERTEX = `
   uniform vec4 place; out vec2 spot;
   void main() {
     spot = (position.xy - place.xy) / place.zw;
-    gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
+    gl_Position = projectionMatrix * (viewMatrix * vec4(position, 1.0));
   }`;
 const LAYER_FRAGMENT = "uniform sampler2D cells; in vec2 spot; out vec4 painted; void main() { painted = texture(cells, spot); }";
 const STEPS = "#c9b79c", REFUGE = "#7fc9a0", OPENINGS = { exit: "#00795a", door: "#0072b2", closed: "#b23c00" };
@@ -73,7 +73,7 @@ class Scenery {
     for (const [kind, [side, top]] of Object.entries(SOLIDS)) {
       const own = solids.filter((each) => each.kind === kind);
       if (!own.length) continue;
-      this.put(sideGeometry(own, elevation), this.see(shaded(side), kind), elevation);
+      this.put(sideGeometry(own, elevation), this.see(shaded(side, kind === "wall"), kind), elevation);
       for (const height of new Set(own.map((each) => each.top))) {
         const level = own.filter((each) => each.top === height).map(({ rings }) => shape(rings));
         this.put(new THREE.ShapeGeometry(level).translate(0, 0, elevation + height), flat(top), elevation);
@@ -166,9 +166,10 @@ function flat(colour, opacity = 1) {
     uniforms: { painting: { value: [...channels(colour), opacity] } } });
 }
 
-function shaded(colour) {
+// Seats are seen from outside only.
+function shaded(colour, through = true) {
   return new THREE.ShaderMaterial({ vertexShader: WALL_VERTEX, fragmentShader: WALL_FRAGMENT, glslVersion: THREE.GLSL3,
-    side: THREE.DoubleSide, uniforms: { colour: { value: channels(colour) }, opacity: { value: 1 } } });
+    ...(through && { side: THREE.DoubleSide }), uniforms: { colour: { value: channels(colour) }, opacity: { value: 1 } } });
 }
 
 function triangles(corners, index, more = {}) {

@@ -1,10 +1,10 @@
 // A crowd in three dimensions: people as figures, and cameras. z is up, in metres.
 "use strict";
 
-const EYES = 0.1, BONES = 22;
+const EYES = 0.1;
 const FOLLOWED = 1.1, OVER = 0.25; // metres: height of the place that is followed; a camera's way above walls
-// Height on the screen from which people are figures, have feet on the floor, and all corners.
-const FIGURE_PIXELS = 6, PLACED_PIXELS = 64, FINE_PIXELS = 110;
+// Height on the screen from which people are figures, have rounder limbs, feet on the floor, and all corners.
+const FIGURE_PIXELS = 6, ROUND_PIXELS = 48, PLACED_PIXELS = 64, FINE_PIXELS = 110;
 const FINE_MOST = 24, HELD_MOST = 100; // figures with all corners, with feet held on the floor
 const QUICK = 0.018; // seconds between pictures from which on there is more detail
 // Where pictures come more slowly than in so many seconds: fewer pixels, then fewer figures.
@@ -133,7 +133,7 @@ class Stage {
   draw(people, frame, chosen) {
     this.resize();
     const rows = people.length;
-    if (rows > this.rows) this.enlarge(2 * rows);
+    if (rows > this.rows) this.enlarge(Math.ceil(1.25 * rows));
     const who = people.find((each) => each.row === chosen);
     this.turned = null;
     this.follow(who, frame);
@@ -160,7 +160,7 @@ class Stage {
       this.troops.shadows.add({ stand: [x, y, heading, person.aid === SEATED ? 1.3 : size], rise: z + OVER_MARKINGS });
       if (person.aid === SEATED || (person.course && high >= least)) figures.push({ person, high, look, colour });
       else {
-        this.troops.add("person_pawn", { stand: [x, y, heading, size], rise: z, colour, look });
+        this.troops.add(high < ROUND_PIXELS ? "person_speck" : "person_pawn", { stand: [x, y, heading, size], rise: z, colour, look });
         pawns += 1;
       }
     }
@@ -178,7 +178,7 @@ class Stage {
       if (high >= PLACED_PIXELS || person === who) this.body.pose(person, frame, k < HELD_MOST || person === who);
       else this.body.poseFarAway(person, frame);
       this.write(data, row, person.course.bank.scale);
-      this.troops.add(`person_${level}`, { row, colour, look });
+      this.troops.add(high < ROUND_PIXELS && !this.still ? "person_small" : `person_${level}`, { row, colour, look });
       if (aid) this.troops.add(`${aid}_${level}`, { row, colour, look });
       row += 1;
     });
@@ -205,10 +205,7 @@ class Stage {
 
   enlarge(rows) {
     this.rows = rows;
-    if (this.bones.value) this.bones.value.dispose();
-    const data = new Float32Array(rows * BONES * 8);
-    this.bones.value = new THREE.DataTexture(data, 2 * BONES, rows, THREE.RGBAFormat, THREE.FloatType);
-    this.bones.value.needsUpdate = true;
+    this.bones.value = sheet(2 * BONES, rows, this.bones.value);
   }
 
   mark(x, y, z) {
