@@ -9,7 +9,8 @@ const FINE_MOST = 24, HELD_MOST = 100; // figures with all corners, with feet he
 const QUICK = 0.018; // seconds between pictures from which on there is more detail
 // Where pictures come more slowly than in so many seconds: fewer pixels, then fewer figures.
 const DETAIL = [{ slow: 0.042, share: 1, afar: 1 }, { slow: 0.042, share: 0.8, afar: 1 }, { slow: 0.042, share: 0.65, afar: 1 },
-  { slow: 0.085, share: 0.5, afar: 1 }, { slow: 0.085, share: 0.5, afar: 2 }, { slow: Infinity, share: 0.5, afar: 4 }];
+  { slow: 0.064, share: 0.5, afar: 1 }, { slow: 0.064, share: 0.5, afar: 2 }, { slow: 0.064, share: 0.5, afar: 4 },
+  { slow: Infinity, share: 0.5, afar: 8 }];
 const FROM = [0.31, -0.77, 0.72], ROOM_HIGH = 1.8, MARGIN = 1.06; // where the camera stands; metres; room round the floor
 const SEATED = "wheelchair", RING = "#e6007e";
 

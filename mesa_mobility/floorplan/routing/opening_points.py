@@ -56,13 +56,16 @@ def straight_on(
 ) -> tuple[float, float]:
     """Where people cross a gate from which the route goes on on another sheet.
 
-    It is on the straight line to where they go next, as if both sheets were one floor. A `point` in
-    the gate is taken where that line is not free, and at all other openings.
+    It is on the straight line to the opening to which they go next, as if both sheets were one
+    floor. A `point` in the gate is taken where that line is not free, before a corner, which people
+    pass abreast, and at all other openings.
     """
     (x, y), other = person, ways.linked[node]
     if other < 0 or after[other] < 0:
         return point
     then = after[other]
+    if ways.kind[then] == CORNER:
+        return point
     dx, dy = ways.xy[other, 0] - ways.xy[node, 0], ways.xy[other, 1] - ways.xy[node, 1]
     rx, ry, _ = place(sight, ways, point[0] + dx, point[1] + dy, then, after[then], np.inf)
     before, behind = -side(ways, node, x, y), side(ways, other, rx, ry)
