@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Text
+from shapely.ops import polylabel
 
 from mesa_mobility.floorplan import FloorPlan, Room
 from mesa_mobility.results.floor import (
@@ -106,10 +107,11 @@ def _name(
 
 def _name_room(axes: Axes, plan: FloorPlan, room: Room) -> None:
     """Write a room's name where most free floor is around it, upright in a narrow room."""
-    free = shapely.intersection(room.shape, plan.free)
-    if free.is_empty:
+    free = shapely.get_parts(shapely.intersection(room.shape, plan.free))
+    parts = [part for part in free if isinstance(part, shapely.Polygon)]
+    if not parts:
         return
-    spot = shapely.Point(shapely.maximum_inscribed_circle(free, 0.1).coords[0])
+    spot = polylabel(max(parts, key=lambda part: part.area), 0.1)
     x_min, y_min, x_max, y_max = room.shape.bounds
     text = _write(axes, spot, room.name, WALL, 7)
     text.set_rotation(90 if y_max - y_min > 1.5 * (x_max - x_min) else 0)
