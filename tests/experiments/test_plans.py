@@ -37,7 +37,7 @@ def test_runs_in_a_building_and_their_report(tmp_path, office):
     write_report(store, page)
     text = page.read_text()
     assert "level by level from the top" in text
-    assert "Rooms</caption>" in text
+    assert "Clearing times: " in text
 
 
 def test_a_run_that_fails_at_its_start_is_kept_as_failed(tmp_path, monkeypatch):
