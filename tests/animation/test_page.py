@@ -240,32 +240,6 @@ def test_people_who_come_later_are_drawn_too(page):
 
 
 @pytest.mark.slow
-def test_triangles_are_put_in_order_for_four_corners_at_a_time(page):
-    """Counted apart from the page: a miss works out the next four corners, 64 are known."""
-    before, after = page.evaluate(
-        """() => {
-          const { triangles } = state.stage.troops.named.person_near.source;
-          return [Array.from(triangles), inFours(triangles)];
-        }"""
-    )
-
-    def turned(corners):
-        rows = np.array(corners).reshape(-1, 3)
-        return sorted(tuple(np.roll(row, -int(row.argmin()))) for row in rows)
-
-    def worked_out(corners):
-        known, count = {}, 0
-        for k, corner in enumerate(corners):
-            if known.get(corner % 64) != corner:
-                count += 1
-                known |= {each % 64: each for each in reversed(corners[k : k + 4])}
-        return count
-
-    assert turned(before) == turned(after)
-    assert worked_out(after) < 0.45 * worked_out(before)
-
-
-@pytest.mark.slow
 def test_thousands_of_bodies_fit_into_a_texture(page):
     width, height = page.evaluate(
         "(({ width, height }) => [width, height])(sheet(2 * BONES, 10000).image)"

@@ -1,12 +1,9 @@
 // Copies of one mesh in one drawing. SwiftShader, which stands in for a graphics card in Chromium, draws instances one by
-// one, works out four corners at a time, and knows the last 64 of them: each instance is of many copies, and triangles
-// come in an order that uses all four.
+// one: each instance is of many copies.
 "use strict";
 
 const TOGETHER = 4096; // triangles of an instance
 const ABREAST = 32; // copies beside each other in a texture
-const FOUR = 4, KNOWN = 64; // corners worked out at a time, and those that are known
-const OFFERED = 10; // triangles among which the next one is chosen
 
 // What is not the same for all copies, by name: its length. All of a copy lies in texels one after another.
 class Fields {
@@ -75,8 +72,8 @@ class Copies {
       for (let k = 0; k < this.together; k += 1) all.set(values, k * values.length);
       this.geometry.setAttribute(name, new THREE.BufferAttribute(all, size));
     }
-    const order = inFours(triangles), index = new Uint16Array(corners * this.together);
-    for (let k = 0; k < index.length; k += 1) index[k] = order[k % corners] + vertices * Math.floor(k / corners);
+    const index = new Uint16Array(corners * this.together);
+    for (let k = 0; k < index.length; k += 1) index[k] = triangles[k % corners] + vertices * Math.floor(k / corners);
     this.geometry.setIndex(new THREE.BufferAttribute(index, 1));
     this.mesh = new THREE.Mesh(this.geometry, new THREE.ShaderMaterial({ ...more, glslVersion: THREE.GLSL3,
       vertexShader: this.fields.reading(vertices, this.together) + vertexShader, uniforms: { ...uniforms, ...this.own } }));
@@ -102,38 +99,4 @@ function sheet(texels, count, before = null) {
     before.dispose();
   }
   return new THREE.DataTexture(data, texels * ABREAST, rows, THREE.RGBAFormat, THREE.FloatType);
-}
-
-// The same triangles in an order in which corners that are not known yet come four at a time.
-function inFours(triangles) {
-  const left = Array.from({ length: triangles.length / 3 }, (_, k) => Array.from(triangles.subarray(3 * k, 3 * k + 3)));
-  const known = new Int32Array(KNOWN).fill(-1), found = [];
-  const isNew = (corner) => known[corner % KNOWN] !== corner;
-  const learn = (corners) => corners.reverse().forEach((corner) => { known[corner % KNOWN] = corner; });
-  const turnsOf = ([a, b, c]) => [[a, b, c], [b, c, a], [c, a, b]];
-  while (left.length) {
-    const free = left.slice(0, 4 * OFFERED).findIndex((each) => !each.some(isNew));
-    if (free >= 0) {
-      found.push(...left.splice(free, 1)[0]);
-      continue;
-    }
-    let best = { score: -1 };
-    const offered = left.slice(0, OFFERED);
-    offered.forEach((one, i) => turnsOf(one).forEach((first) => offered.forEach((other, j) => {
-      if (i === j && offered.length > 1) return;
-      for (const second of turnsOf(other)) {
-        const both = [...first, ...second], from = both.findIndex(isNew), four = both.slice(from, from + FOUR);
-        const score = new Set(four.filter(isNew)).size - 0.01 * (i + j);
-        if (score > best.score) best = { score, i, first, j, second, four };
-      }
-    })));
-    learn(best.four);
-    found.push(...best.first);
-    // The second one stays first in the row, turned as it was counted on.
-    left[best.j] = best.second;
-    left.splice(best.i, 1);
-    const at = left.indexOf(best.second);
-    if (at > 0) left.unshift(...left.splice(at, 1));
-  }
-  return found;
 }
