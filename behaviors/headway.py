@@ -7,6 +7,9 @@ from mesa_mobility.behaviors.stepping import STANDS
 
 from mesa_mobility import CompiledTerm, Option, Other, Range, pair_kernel
 
+TREADS = 1.5
+"""Treads that people on stairs keep more than elsewhere from those ahead."""
+
 
 # ``me`` is a Me with the fields ``pace`` and ``tread``.
 @pair_kernel(fields=("pace", "tread"))
@@ -25,7 +28,7 @@ def _headway(option: Option, me: Any, other: Other, p: "Headway") -> float:
     ahead = dx * mx + dy * my
     # By factors that all neighbours share: a processor does few divisions at a time.
     share = 1.0 - abs(dy * mx - dx * my) * (1.0 / p.width)
-    excess = option.speed - me.pace * (ahead - p.distance - me.tread) * (1.0 / p.time)
+    excess = option.speed - me.pace * (ahead - p.distance - TREADS * me.tread) * (1.0 / p.time)
     if ahead <= 0.0 or share <= 0.0 or excess <= 0.0:
         return 0.0
     if (other.x - me.x) * wx + (other.y - me.y) * wy >= way2:
@@ -48,7 +51,8 @@ class Headway(CompiledTerm):
     s is the share of their speed at which the ground lets people walk. In speed zones people keep
     the same distances at a lower speed, so flows fall as speeds do. In the SFPE Handbook, too,
     speeds on stairs are a share of those on a level floor at every density (chapter on employing
-    the hydraulic model). On stairs l is a tread longer, since a body needs the tread before it.
+    the hydraulic model). On stairs l is a tread and a half longer. A body needs the tread before
+    it. People step over a whole tread or not at all, so half a tread stays empty on average.
 
     The cost of a neighbour is 1.5 h(e), in metres over the 1.5 s of the paper. h is Huber's loss
     (Annals of Mathematical Statistics 35 (1964) 73-101): e^2 / (2 b) for e up to b, ``softness``,

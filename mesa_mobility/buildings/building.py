@@ -40,9 +40,9 @@ class Building:
     in buildings. `true_places` and `plane_places` lead from the plane to true coordinates and back.
 
     On a flight, people walk as in a speed zone: at a share of the speed of a level floor, after the
-    SFPE Handbook, and more slowly up than down (`Flight.factor`, `Flight.uphill`). They keep a
-    tread more than elsewhere to those ahead. On stairs they take recorded steps as long as the
-    treads, if their type has maps for stairs (`PedestrianType.up`, `PedestrianType.down`).
+    SFPE Handbook, and more slowly up than down (`Flight.factor`, `Flight.uphill`). On stairs
+    they keep a tread and a half more than elsewhere to those ahead, and take recorded steps as long
+    as the treads, if their type has maps for stairs (`PedestrianType.up`, `PedestrianType.down`).
     Escalators carry them. People who use no stairs use ramps and lifts.
 
     A flight should be at least 2.7 m long in plan, twice the longest step: on a shorter one people

@@ -196,9 +196,9 @@ def test_slow_ground_lets_people_walk_that_much_slower_at_the_same_distance(pace
     assert costs == pytest.approx([0.0, 1.5 * (0.1 * pace) ** 2 / 0.4])
 
 
-def test_on_stairs_people_keep_a_tread_more():
+def test_on_stairs_people_keep_a_tread_and_a_half_more():
     ending, term, costs = Ending(displacement=1.5, duration=1.5), Headway(**ROUND), []
-    for ahead, tread in ((1.5, 0.0), (1.8, 0.3), (1.7, 0.2), (1.5, 0.1)):
+    for ahead, tread in ((1.5, 0.0), (1.95, 0.3), (1.8, 0.2), (1.55, 0.1)):
         around = [((ahead, 0.0), STILL)]
         option = one_option(ending, target=(20.0, 0.0), neighbours=around, tread=tread)
         costs.append(float(term.cost(option)[0]))

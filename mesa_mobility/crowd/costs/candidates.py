@@ -68,8 +68,8 @@ class Candidates:
         neighbour_types: (q,) as ``types``.
         neighbour_groups: (q,) as ``groups``.
         fields: (b,) values of each field that the model declares for its people, of ``pace``, the
-            share of their speed at which the ground lets people walk, and of ``tread``, metres that
-            they keep from those ahead on stairs, more than elsewhere.
+            share of their speed at which the ground lets people walk, and of ``tread``, the depth
+            of the treads beneath them, metres, 0 off stairs.
         neighbour_fields: (q,) the same of the neighbours.
         time: simulated seconds.
         rng: the model's generator; where a decision is only explained, a copy of it.

@@ -49,8 +49,8 @@ def option_kernel(
     Args:
         function: the function.
         fields: names of fields that the model declares for its people, or ``pace``: the share of
-            their speed at which the ground lets people walk, or ``tread``: metres that they keep
-            from those ahead on stairs, more than elsewhere. ``me`` then has them, too, as floats.
+            their speed at which the ground lets people walk, or ``tread``: depth of the
+            treads beneath them, metres, 0 off stairs. ``me`` then has them, too, as floats.
 
     Raises:
         ModelError: an argument or a field that there is not, or fields that are no list of

@@ -139,8 +139,8 @@ none; ``corner``, number of the next corner of their route; ``nearest``, shortes
 metres; ``since``, time of their last progress, s; ``desired_speed``, the preferred speed of the
 last decision, m/s; ``behind``, metres by which free walking has fallen short of that speed, below 0
 if they are ahead; ``strayed``, angle by which the movement under way ends off the course;
-``pace``, share of their speed at which the ground lets them walk; ``tread``, metres that they keep
-from those ahead on stairs, more than elsewhere.
+``pace``, share of their speed at which the ground lets them walk; ``tread``, depth of the treads
+beneath them, metres, 0 off stairs.
 """
 
 

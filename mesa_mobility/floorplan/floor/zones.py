@@ -24,9 +24,9 @@ class SpeedZone:
     A movement is decided on as a whole: one that leads into a zone or out of it has the mean speed
     of its way. So people slow down at most 1.5 s before a zone, speed up at most 1.5 s before its
     end, and come to its far side when they should. Where zones overlap, their factors multiply.
-    People keep the same distances as elsewhere, at a lower speed (`Headway`). On stairs they keep a
-    tread more, since a body needs the tread before it. A zone with a tread and a direction is a
-    stair, on which people walk by the maps for stairs (`PedestrianType.up`).
+    People keep the same distances as elsewhere, at a lower speed, and on stairs a tread and a half
+    more (`Headway`). A zone with a tread and a direction is a stair, on which people walk by the
+    maps for stairs (`PedestrianType.up`).
 
     Args:
         polygon: shapely or WKT, metres.
@@ -34,7 +34,7 @@ class SpeedZone:
         name: for files and pictures.
         uphill: the factor for people who walk against ``downhill``; by default they have the same.
         downhill: the direction (dx, dy) in which the ground falls; needed for ``uphill``.
-        tread: metres that people keep from those ahead of them, more than elsewhere.
+        tread: depth of the treads of stairs, metres; 0 for other ground.
 
     Raises:
         FloorPlanError: not a polygon, a number out of range, or ``uphill`` without a direction.
