@@ -311,17 +311,20 @@ class Dynamics(Saved):
         deciding, soonest = due(rows, now, self._scene.crowd.records)
         self._next = LONG_AFTER  # brought forward if a behaviour adds people meanwhile
         if len(deciding):
-            self._decide(deciding)
+            scene, crowd, rng = self._scene, self._scene.crowd, self._model.rng
+            scene.journeys.advance(deciding, now, crowd, scene.repertoire.table, rng)
+            free = deciding
+            if len(scene.lifts):
+                free = scene.lifts.stand(deciding, now, crowd, scene.rules.standing)
+            if len(free):
+                self._decide(free)
             # Twins may have had the records grow.
-            soonest = min(soonest, due(deciding, now, self._scene.crowd.records)[1])
+            soonest = min(soonest, due(deciding, now, crowd.records)[1])
         self._next = min(self._next, soonest)
 
     def _decide(self, deciding: NDArray[np.int64]) -> None:
         model, scene, people = self._model, self._scene, self._model.population
         inside = people.present
-        scene.journeys.advance(
-            deciding, model.frame, scene.crowd, scene.repertoire.table, model.rng
-        )
         change_sheets(scene.strips, deciding, scene.crowd)
         model.waits.evaluate(deciding, model.frame, scene.crowd)
         everybody = people.departed.together_with(inside)

@@ -222,10 +222,6 @@ class GiveWay(Tactic):
         points, speeds = desired.points.copy(), desired.speeds.copy()
         firsts = self._ways_of_firsts(rows, deciding)
         places = [self._places(row, firsts, deciding) for row in rows.tolist()]
-        lifts = self._model.lifts
-        places = [
-            each[lifts.may_go(row, each)] for row, each in zip(rows.tolist(), places, strict=True)
-        ]
         best = np.array(
             [
                 each[0] if len(each) else here
@@ -246,8 +242,7 @@ class GiveWay(Tactic):
             tried = self._model.wishes(
                 deciding.pedestrians[copies], others, own[k].repeat(len(others))
             )
-            may = self._model.lifts.may_go(int(deciding.pedestrians[who[k]]), others)
-            moves = np.flatnonzero(may & (_gains(tried, others) >= GAINED))
+            moves = np.flatnonzero(_gains(tried, others) >= GAINED)
             at, short[k] = (moves[0], False) if len(moves) else (0, True)
             best[k], blockers[k] = others[at], tried.blockers[at]
             goals[k] = places[k][at]

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.crowd.lifts.carrying import carry
 from mesa_mobility.crowd.lifts.rides import Rides
 from mesa_mobility.crowd.lifts.spots import free_spot, swapped_spots
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
@@ -26,6 +27,9 @@ EVERY = 3
 
 DWELL = 3 * FRAMES_A_SECOND
 """Frames for which the doors stay open at least after the last person was let in."""
+
+STANDS = 45
+"""Frames for which people in a car that is under way stand before they are told so again."""
 
 CLEAR = 0.5
 """Core radii by which people must be past the front edge of a car before it goes."""
@@ -125,13 +129,31 @@ class Lifts(Saved):
                 found[shaft.in_car(stop, points)] = number
         return found
 
-    def may_go(self, row: int, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(n,) whether somebody may go to points (n, 2), metres: riders of a car that is under way
-        stay in it."""
-        lift = int(self._rides[row]) if row < len(self._rides) else NOBODY
-        if lift == NOBODY or self._from[lift] == NOBODY:
-            return np.ones(len(points), np.bool_)
-        return self.shafts[lift].in_car(int(self._from[lift]), points)
+    def stand(
+        self, rows: NDArray[np.int64], frame: int, crowd: Crowd, standing: NDArray[np.int32]
+    ) -> NDArray[np.int64]:
+        """Have those who ride a car that is under way stand; the others decide.
+
+        Args:
+            rows: (n,) people whose movements have ended.
+            frame: now.
+            crowd: the crowd.
+            standing: (types,) standing cluster of each type.
+
+        Returns:
+            (m,) rows of those who decide.
+        """
+        self._make_room(rows)
+        # The last is for those who ride no lift.
+        under_way = np.append(self._from != NOBODY, False)[self._rides[rows]]
+        who = rows[under_way]
+        if len(who):
+            facing = np.column_stack([np.cos(crowd.heading[who]), np.sin(crowd.heading[who])])
+            # A car that has come stands until the next look at it.
+            until = max(int(self._open[self._rides[who]].min()), self.next_look(frame))
+            carry(who, np.zeros(2), facing, frame, min(until, frame + STANDS), crowd)
+            crowd.cluster[who] = standing[crowd.type_index[who]]
+        return rows[~under_way]
 
     def shut_in(
         self, rows: NDArray[np.int64], crowd: Crowd, is_open: Callable[[str], bool]
@@ -197,31 +219,15 @@ class Lifts(Saved):
             return
         self._make_room(inside)
         for lift, shaft in enumerate(self.shafts):
-            if self._from[lift] != NOBODY:
-                self._leave_behind(lift, inside, crowd, -shaft.before)
             if frame < self._open[lift]:
                 continue
             if self._from[lift] != NOBODY:
                 self._arrive(lift, frame, inside, crowd)
             self._stand(lift, shaft, frame, inside, crowd, environment)
 
-    def _leave_behind(
-        self, lift: int, inside: NDArray[np.int64], crowd: Crowd, clear: float
-    ) -> None:
-        """Those who have gone out of a car that has left its stop do not ride, and wait again.
-
-        On the way people may step into the doorway. When the car arrives, they must be in it.
-        """
-        riding = inside[self._rides[inside] == lift]
-        points = np.column_stack([crowd.x[riding], crowd.y[riding]])
-        outside = riding[~self.shafts[lift].in_car(int(self._from[lift]), points, clear)]
-        self._rides[outside], self._calls[outside] = NOBODY, NOBODY
-        self.carried[lift] -= len(outside)
-
     def _arrive(self, lift: int, frame: int, inside: NDArray[np.int64], crowd: Crowd) -> None:
         """Open the doors: those who have ridden are at the new stop from now on."""
         start, end, shaft = int(self._from[lift]), int(self.at[lift]), self.shafts[lift]
-        self._leave_behind(lift, inside, crowd, 0.0)
         riding = inside[self._rides[inside] == lift]
         shift_people(crowd, riding, np.tile(shaft.shift(start, end), (len(riding), 1)))
         self._spot[riding] += shaft.shift(start, end)
@@ -247,17 +253,20 @@ class Lifts(Saved):
             return
         if self._admit(lift, stop, inside, crowd, environment):
             self._since[lift] = frame
-        # Doors do not close on somebody who has just set foot in the car, and may step back.
-        there = there[self._rides[there] == lift]
         ours = inside[self._rides[inside] == lift]
         points = np.column_stack([crowd.x[ours], crowd.y[ours]])
         self._spot[ours] = swapped_spots(shaft, stop, points, crowd.core[ours], self._spot[ours])
-        outside = ours[~shaft.in_car(stop, points, CLEAR * crowd.core[ours])]
+        ends = np.column_stack([crowd.to_x[ours], crowd.to_y[ours]])
+        clear = CLEAR * crowd.core[ours]
+        are_in = shaft.in_car(stop, points, clear) & shaft.in_car(stop, ends, clear)
+        foot_in = shaft.in_car(stop, points)
         waited = frame - self._since[lift]
-        if len(outside) and waited < GIVES_UP:
+        steps_out = foot_in & ~shaft.in_car(stop, ends)
+        if steps_out.any() or (waited < GIVES_UP and not are_in.all()):
             return
-        # People who have set foot in the car still ride.
-        self._rides[np.setdiff1d(outside, there)] = NOBODY
+        # People who have set foot in the car ride, though they may stand in the doorway.
+        self._rides[ours[~foot_in]] = NOBODY
+        there = ours[foot_in]
         if len(there) and waited >= DWELL:
             rise = [
                 abs(shaft.stops[to].elevation - shaft.stops[stop].elevation)

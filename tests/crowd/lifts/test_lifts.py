@@ -8,7 +8,6 @@ import pytest
 from mesa_mobility import PedestrianModel, Trajectories
 from mesa_mobility.buildings import Building, Level, Lift, Stairs
 from mesa_mobility.crowd.conflicts import give_way
-from mesa_mobility.crowd.state.twins import shift_people
 from mesa_mobility.errors import ContentError, FloorPlanError
 from mesa_mobility.floorplan import Exit, Router
 from mesa_mobility.results import check_safety
@@ -73,62 +72,51 @@ def test_everybody_gets_out_by_stairs_or_lift(rng):
     assert check_safety(tracks, plan.walls, plan.free, building=building).passed
 
 
-def test_who_goes_out_while_the_doors_close_stays_on_their_level_and_rides_later():
-    building = office(stairs=False)
-    model = PedestrianModel(
-        building, population="wheelchair_manual: 1.0", record=True, rng=1, frames_per_step=1
-    )
-    model.add_pedestrians(building.places([(20.45, 4.0)], level=1))
+def until_the_car_goes(model):
+    """Step until somebody rides."""
     while not model.lifts.carried[0]:
         model.step()
-    # From the middle of the car, 1.4 m deep and 0.1 m behind the door, to 1.1 m before it.
-    x, y = model.crowd.x[0], model.crowd.y[0]
-    to = building.places([(20.45, 5.4)], level=1)[0]
-    shift_people(model.crowd, np.array([0]), np.array([to - (x, y)]))
-    model.run(max_seconds=300)
-    assert model.inside == 0
-    tracks = Trajectories.of(model)
-    # Each change of level is one in the car.
-    first, later = tracks.steps()
-    changes = np.flatnonzero(tracks.level[first] != tracks.level[later])
-    assert len(changes) == 1
-    assert model.lifts.carried.tolist() == [1]
-    assert tracks.y[first[changes[0]]] > 6.6
-    assert tracks.y[later[changes[0]]] == pytest.approx(tracks.y[first[changes[0]]], abs=0.05)
 
 
-def test_a_rider_who_makes_way_stays_in_a_car_that_is_under_way(monkeypatch):
+def test_people_in_a_car_that_is_under_way_stand_though_others_ask_them_to_make_way(monkeypatch):
     building = office(stairs=False)
     model = PedestrianModel(building, population="wheelchair_manual: 1.0", rng=1, frames_per_step=1)
     model.add_pedestrians(building.places([(20.45, 4.0), (12.0, 4.0)], level=1))
-    while not model.lifts.carried[0]:
-        model.step()
-    before = building.places([(20.45, 5.4)], level=1)
-    monkeypatch.setattr(give_way, "places_aside", lambda *_: before)
+    until_the_car_goes(model)
+    outside = building.places([(20.45, 5.4)], level=1)
+    monkeypatch.setattr(give_way, "places_aside", lambda *_: outside)
     [tactic] = [each for each in model.tactics if each.name == "giving_way"]
-    # The other, to whom nobody is in the way, is to pass from the outside.
+    # 1.5 s is the longest movement, and the ride takes 6 s.
+    places = []
     while model.lifts._from[0] >= 0:
         notes = tactic._notes
         notes["first"][0], notes["asked_by"][0], notes["until"][0] = 1, 1, 1e6
+        places.append((model.crowd.x[0], model.crowd.y[0]))
         model.step()
-        assert 0 in np.concatenate(riders(model))
-    # With open doors they may.
-    assert model.lifts.may_go(0, before).all()
+    assert len(places) >= 180
+    assert set(places[45:]) == {places[-1]}
+    # They set out in the frame in which the doors open.
+    moved = places[-1] + model.lifts.shafts[0].shift(1, 0) - (model.crowd.x[0], model.crowd.y[0])
+    assert np.hypot(*moved) < 0.05
 
 
-def test_who_steps_back_into_the_doorway_while_a_car_leaves_still_rides():
+def test_doors_do_not_close_on_somebody_who_steps_out():
     building = office(stairs=False)
-    model = PedestrianModel(building, population="wheelchair_manual: 1.0", rng=1, frames_per_step=1)
+    model = PedestrianModel(building, population="wheelchair_manual: 1.0", rng=1, frames_per_step=3)
     model.add_pedestrians(building.places([(20.45, 4.0)], level=1))
-    while not model.lifts.carried[0]:
+    crowd, lifts = model.crowd, model.lifts
+    while not len(riders(model)[1]) or crowd.stride[0]:
+        lifts._since[0] = model.frame  # so that the doors stay open
         model.step()
-    # The line of the door is y = 6.5, and the car begins 0.1 m behind it.
-    here = model.crowd.x[0], model.crowd.y[0]
-    to = building.places([(20.45, 6.52)], level=1)[0]
-    shift_people(model.crowd, np.array([0]), np.array([to - here]))
-    model.run(max_seconds=300)
-    # Down with them, after the way up to them: nobody had to wait for another ride.
-    assert (model.inside, model.lifts.carried.tolist(), model.lifts.trips.tolist()) == (0, [1], [2])
+    assert lifts._from[0] < 0
+    lifts._since[0] = model.frame - 1000
+    own = crowd.to_y[0]
+    crowd.to_y[0] = building.places([(20.45, 6.0)], level=1)[0, 1]
+    lifts.advance(model.frame, model.rows, crowd, model._scene.environment)
+    assert lifts._from[0] < 0
+    crowd.to_y[0] = own
+    lifts.advance(model.frame, model.rows, crowd, model._scene.environment)
+    assert lifts._from[0] == 1
 
 
 @pytest.mark.parametrize("y", [6.3, 7.3])
