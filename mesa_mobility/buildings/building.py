@@ -14,19 +14,20 @@ from shapely import Polygon
 
 from mesa_mobility.buildings import geojson
 from mesa_mobility.buildings.checks import check_joined, check_names
-from mesa_mobility.buildings.escalator import Escalator
-from mesa_mobility.buildings.flights import Flight, Landing
+from mesa_mobility.buildings.connections.escalator import Escalator
+from mesa_mobility.buildings.connections.flights import Flight, Landing
+from mesa_mobility.buildings.connections.lift import Lift
+from mesa_mobility.buildings.connections.ramp import Ramp
+from mesa_mobility.buildings.connections.stairs import Stairs
 from mesa_mobility.buildings.footing import Footing
 from mesa_mobility.buildings.headroom import check_headroom, check_shafts
 from mesa_mobility.buildings.level import Level, sheet_of
-from mesa_mobility.buildings.lift import Lift
 from mesa_mobility.buildings.places import Places
-from mesa_mobility.buildings.ramp import Ramp
+from mesa_mobility.buildings.plans import plan_of_level, plan_of_sheets
 from mesa_mobility.buildings.refuge import Refuge
-from mesa_mobility.buildings.sheets import Sheet, seam_of, shaft_of, sheets_of, zones_of
-from mesa_mobility.buildings.stairs import Stairs
+from mesa_mobility.buildings.sheets import Sheet, sheets_of
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import Exit, FloorPlan, Gate, Room
+from mesa_mobility.floorplan import FloorPlan, Gate, Room
 from mesa_mobility.floorplan.floor.checks import read_polygon
 from mesa_mobility.floorplan.formats.geojson import label
 
@@ -124,7 +125,7 @@ class Building:
         check_shafts(self._sheets, flights, self.lifts)
         self._places = Places(self._sheets, flights, self._owners, self.lifts)
         self.footing = Footing(flights)
-        self.floor_plan = self._plan()
+        self.floor_plan = plan_of_sheets(self.levels, self.flights, self.lifts, self._sheets, name)
 
     def __repr__(self) -> str:
         named = f" {self.name!r}" if self.name else ""
@@ -335,50 +336,8 @@ class Building:
         Stairs and lifts are not part of it: people leave by the end of a flight or the door of a
         lift as by an exit, which has the name of the flight or the lift.
         """
-        own, sheet = self.level(level), self._sheet(level)
-        ends = [Exit(each.name, *each.head) for each in self.flights if each.upper == sheet.name]
-        ends += [Exit(each.name, *each.foot) for each in self.flights if each.lower == sheet.name]
-        ends += [Exit(each.name, *each.door) for each in self.lifts if level in each.numbers]
-        floor = max(shapely.get_parts(sheet.floor), key=lambda part: part.area)
-        return FloorPlan(
-            floor,
-            exits=[*own.exits, *ends],
-            gates=own.gates,
-            obstacles=own.obstacles,
-            zones=own.zones,
-            name=own.name or self.name,
-            cut_off=True,
-            rooms=[each for each in own.rooms if each.shape.intersection(floor).area > 0.0],
-        )
+        sheet = self._sheet(level)
+        return plan_of_level(self.level(level), sheet, self.flights, self.lifts, self.name)
 
     def _sheet(self, level: int) -> Sheet:
         return self._sheets[sheet_of(self.level(level).number)]
-
-    def _plan(self) -> FloorPlan:
-        exits, gates, obstacles, zones = [], [], [], []
-        for level in self.levels:
-            sheet = self._sheet(level.number)
-            exits += [sheet.opening(each) for each in level.exits]
-            gates += [sheet.opening(each) for each in level.gates]
-            obstacles += [sheet.in_plane(each) for each in level.blocked]
-            for zone in level.zones:
-                zones.append(replace(zone, polygon=sheet.in_plane(zone.area)))
-        for flight in self.flights:
-            zones += zones_of(flight, self._sheets)
-        areas = [sheet.in_plane(sheet.area) for sheet in self._sheets.values()]
-        parts = [part for area in areas for part in shapely.get_parts(area)]
-        return FloorPlan(
-            parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts),
-            exits=exits,
-            gates=gates,
-            obstacles=obstacles,
-            zones=zones,
-            name=self.name or (self.levels[0].name if len(self.levels) == 1 else ""),
-            seams=[seam_of(flight, self._sheets) for flight in self.flights],
-            shafts=[shaft_of(lift, self._sheets) for lift in self.lifts],
-            rooms=[replace(each, level=0) for each in self._rooms_in_plane()],
-        )
-
-    def _rooms_in_plane(self) -> Sequence[Room]:
-        """The rooms of the plane: those of the level if it is the only sheet, otherwise none."""
-        return self.levels[0].rooms if len(self._sheets) == 1 else ()

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from itertools import pairwise
 
-from mesa_mobility.buildings.escalator import DOWN, UP, Escalator
+from mesa_mobility.buildings.connections.escalator import DOWN, UP, Escalator
+from mesa_mobility.buildings.connections.lift import Lift
+from mesa_mobility.buildings.connections.ramp import Ramp
+from mesa_mobility.buildings.connections.stairs import Stairs
 from mesa_mobility.buildings.level import Level
-from mesa_mobility.buildings.lift import Lift
-from mesa_mobility.buildings.ramp import Ramp
-from mesa_mobility.buildings.stairs import Stairs
 from mesa_mobility.errors import FloorPlanError
 
 

@@ -8,12 +8,12 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.buildings.escalator import DOWN, Escalator
-from mesa_mobility.buildings.lift import Lift
-from mesa_mobility.buildings.lines import Line
-from mesa_mobility.buildings.ramp import Ramp
+from mesa_mobility.buildings.connections.escalator import DOWN, Escalator
+from mesa_mobility.buildings.connections.lift import Lift
+from mesa_mobility.buildings.connections.lines import Line
+from mesa_mobility.buildings.connections.ramp import Ramp
+from mesa_mobility.buildings.connections.stairs import DOG_LEG, FLIGHTS, Stairs
 from mesa_mobility.buildings.refuge import Refuge
-from mesa_mobility.buildings.stairs import DOG_LEG, FLIGHTS, Stairs
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.formats import geojson
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.buildings.flights import Flight
+from mesa_mobility.buildings.connections.flights import Flight
 from mesa_mobility.buildings.places import height_on, place_on
 
 _STEP = 0.8

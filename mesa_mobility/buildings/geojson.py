@@ -6,7 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from mesa_mobility.buildings.escalator import Escalator
+from mesa_mobility.buildings.connections.escalator import Escalator
+from mesa_mobility.buildings.connections.lift import Lift
+from mesa_mobility.buildings.connections.ramp import Ramp
+from mesa_mobility.buildings.connections.stairs import Stairs
 from mesa_mobility.buildings.features import (
     KINDS,
     REFUGE,
@@ -17,10 +20,7 @@ from mesa_mobility.buildings.features import (
     whole,
 )
 from mesa_mobility.buildings.level import Level
-from mesa_mobility.buildings.lift import Lift
-from mesa_mobility.buildings.ramp import Ramp
 from mesa_mobility.buildings.refuge import Refuge
-from mesa_mobility.buildings.stairs import Stairs
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.files.atomic import replacing
 from mesa_mobility.floorplan.formats import geojson

@@ -9,8 +9,8 @@ import shapely
 from shapely import Point
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.buildings.flights import Flight
-from mesa_mobility.buildings.lift import Lift
+from mesa_mobility.buildings.connections.flights import Flight
+from mesa_mobility.buildings.connections.lift import Lift
 from mesa_mobility.buildings.places import height_on, place_on
 from mesa_mobility.buildings.sheets import Sheet
 from mesa_mobility.errors import FloorPlanError

@@ -7,10 +7,10 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
-from mesa_mobility.buildings.flights import Flight
+from mesa_mobility.buildings.connections.flights import Flight
+from mesa_mobility.buildings.connections.lift import Lift
+from mesa_mobility.buildings.connections.lines import middle_of
 from mesa_mobility.buildings.level import sheet_of
-from mesa_mobility.buildings.lift import Lift
-from mesa_mobility.buildings.lines import middle_of
 from mesa_mobility.buildings.sheets import BEYOND, Sheet
 from mesa_mobility.errors import FloorPlanError
 

@@ -10,10 +10,10 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from mesa_mobility.buildings.flights import Flight, Landing
+from mesa_mobility.buildings.connections.flights import Flight, Landing
+from mesa_mobility.buildings.connections.lift import DOORWAY, Lift
+from mesa_mobility.buildings.connections.lines import moved, pair, right_angle
 from mesa_mobility.buildings.level import Level, sheet_of
-from mesa_mobility.buildings.lift import DOORWAY, Lift
-from mesa_mobility.buildings.lines import moved, pair, right_angle
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import WALKS, Belt, Exit, Gate, Seam, Shaft, SpeedZone, Stop
 

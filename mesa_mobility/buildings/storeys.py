@@ -8,16 +8,16 @@ import networkx as nx
 import shapely
 
 from mesa_mobility.buildings.building import Building
-from mesa_mobility.buildings.escalator import Escalator
+from mesa_mobility.buildings.connections.escalator import Escalator
+from mesa_mobility.buildings.connections.flights import Flight, Landing
+from mesa_mobility.buildings.connections.lift import Lift
+from mesa_mobility.buildings.connections.ramp import Ramp
+from mesa_mobility.buildings.connections.stairs import Stairs
 from mesa_mobility.buildings.features import part_of
-from mesa_mobility.buildings.flights import Flight, Landing
 from mesa_mobility.buildings.geojson import level_of
 from mesa_mobility.buildings.headroom import HEADROOM_M, check_headroom, close_to
 from mesa_mobility.buildings.level import Level, sheet_of
-from mesa_mobility.buildings.lift import Lift
-from mesa_mobility.buildings.ramp import Ramp
 from mesa_mobility.buildings.sheets import sheets_of
-from mesa_mobility.buildings.stairs import Stairs
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.formats.assembling.given_exits import exits_for
 from mesa_mobility.floorplan.formats.assembling.parts import tied

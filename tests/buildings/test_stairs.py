@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from shapely import box
 
 from mesa_mobility import Level, Stairs
-from mesa_mobility.buildings.stairs import speed_factor
+from mesa_mobility.buildings.connections.stairs import speed_factor
 from mesa_mobility.errors import FloorPlanError
 
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
-from mesa_mobility.buildings import stairs
+from mesa_mobility.buildings.connections import stairs
 from mesa_mobility.buildings.features import part_of
 from mesa_mobility.floorplan.formats.ifc import flights as recognised
 from mesa_mobility.floorplan.formats.ifc.flights import RISERS, TREADS, way_of

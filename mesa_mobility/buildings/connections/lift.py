@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from shapely import Polygon
 
 from mesa_mobility._numbers import is_number
+from mesa_mobility.buildings.connections.lines import Line, line_of, strip, width_of
 from mesa_mobility.buildings.level import Level, number_of
-from mesa_mobility.buildings.lines import Line, line_of, strip, width_of
 from mesa_mobility.errors import FloorPlanError
 
 DOORWAY = 0.1

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Self
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.buildings.flights import Flight, Landing
+from mesa_mobility.buildings.connections.flights import Flight, Landing
+from mesa_mobility.buildings.connections.lines import Line, line_of, width_of
 from mesa_mobility.buildings.level import Level, number_of, sheet_of
-from mesa_mobility.buildings.lines import Line, line_of, width_of
 from mesa_mobility.errors import FloorPlanError
 
 LEAST_WIDTH = 0.8

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely import Polygon
 
-from mesa_mobility.buildings.lines import Line, moved, right_angle, strip, width_of
+from mesa_mobility.buildings.connections.lines import Line, moved, right_angle, strip, width_of
 
 UPWARDS = 0.8
 """Speed up stairs as a share of that down: 0.8 and 1.0 m/s in IMO MSC.1/Circ.1533. The speeds of

@@ -9,9 +9,9 @@ import numpy as np
 from shapely import Polygon
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.buildings.flights import Flight, Landing
+from mesa_mobility.buildings.connections.flights import Flight, Landing
+from mesa_mobility.buildings.connections.lines import Line, line_of, pair, width_of
 from mesa_mobility.buildings.level import Level, number_of, sheet_of
-from mesa_mobility.buildings.lines import Line, line_of, pair, width_of
 from mesa_mobility.errors import FloorPlanError
 
 STRAIGHT, DOG_LEG, FLIGHTS = SHAPES = "straight", "dog_leg", "flights"
