@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd.lifts.carrying import carry
 from mesa_mobility.crowd.lifts.rides import Rides
-from mesa_mobility.crowd.lifts.spots import free_spot, swapped_spots
+from mesa_mobility.crowd.lifts.spots import THERE, free_spot, swapped_spots
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
 from mesa_mobility.crowd.saved import Saved
 from mesa_mobility.crowd.state.environment import Environment
@@ -31,11 +31,8 @@ DWELL = 3 * FRAMES_A_SECOND
 STANDS = 45
 """Frames for which people in a car that is under way stand before they are told so again."""
 
-CLEAR = 0.5
-"""Core radii by which people must be past the front edge of a car before it goes."""
-
 GIVES_UP = 20 * FRAMES_A_SECOND
-"""Frames after which those who have not got in are no longer waited for."""
+"""Frames after which those who have not got in step back, and wait for the next ride."""
 
 
 class Lifts(Saved):
@@ -251,32 +248,28 @@ class Lifts(Saved):
         if ((self._rides[there] != lift) & ~comes).any():
             self._since[lift] = frame
             return
-        if self._admit(lift, stop, inside, crowd, environment):
-            self._since[lift] = frame
+        waited = frame - self._since[lift]
+        ours = inside[self._rides[inside] == lift]
+        if waited >= GIVES_UP and len(ours):
+            self._rides[ours[~self._are_in(lift, stop, ours, crowd)]] = NOBODY
+        elif self._admit(lift, stop, inside, crowd, environment):
+            self._since[lift], waited = frame, 0
         ours = inside[self._rides[inside] == lift]
         points = np.column_stack([crowd.x[ours], crowd.y[ours]])
         self._spot[ours] = swapped_spots(shaft, stop, points, crowd.core[ours], self._spot[ours])
-        ends = np.column_stack([crowd.to_x[ours], crowd.to_y[ours]])
-        clear = CLEAR * crowd.core[ours]
-        are_in = shaft.in_car(stop, points, clear) & shaft.in_car(stop, ends, clear)
-        foot_in = shaft.in_car(stop, points)
-        waited = frame - self._since[lift]
-        steps_out = foot_in & ~shaft.in_car(stop, ends)
-        if steps_out.any() or (waited < GIVES_UP and not are_in.all()):
+        # The car waits for riders to get in, and for others to step back out.
+        if not self._are_in(lift, stop, ours, crowd).all() or (self._rides[there] != lift).any():
             return
-        # People who have set foot in the car ride, though they may stand in the doorway.
-        self._rides[ours[~foot_in]] = NOBODY
-        there = ours[foot_in]
-        if len(there) and waited >= DWELL:
+        if len(ours) and waited >= DWELL:
             rise = [
                 abs(shaft.stops[to].elevation - shaft.stops[stop].elevation)
-                for to in self._to[there].tolist()
+                for to in self._to[ours].tolist()
             ]
-            self.carried[lift] += len(there)
-            to = int(self._to[there[int(np.argmin(rise))]])
+            self.carried[lift] += len(ours)
+            to = int(self._to[ours[int(np.argmin(rise))]])
             self.log.add(lift, stop, to, frame)
             self._go(lift, to, frame)
-        elif not len(there):
+        elif not len(ours):
             calls = [
                 (int(called.min()), to)
                 for to in range(len(shaft.stops))
@@ -327,6 +320,18 @@ class Lifts(Saved):
         ways[stop] = np.inf
         best = int(np.argmin(ways))
         return best if np.isfinite(ways[best]) else stop
+
+    def _are_in(
+        self, lift: int, stop: int, rows: NDArray[np.int64], crowd: Crowd
+    ) -> NDArray[np.bool_]:
+        """(n,) whether people are at their spot or wholly behind the line of the door, now and when
+        their movement ends."""
+        shaft, found = self.shafts[lift], np.ones(len(rows), np.bool_)
+        for x, y in ((crowd.x, crowd.y), (crowd.to_x, crowd.to_y)):
+            points = np.column_stack([x[rows], y[rows]])
+            at_spot = np.hypot(*(points - self._spot[rows]).T) < THERE
+            found &= at_spot | shaft.in_car(stop, points, crowd.core[rows] - shaft.before)
+        return found
 
     def _in_car(
         self, lift: int, stop: int, inside: NDArray[np.int64], crowd: Crowd

@@ -95,6 +95,7 @@ class RideLifts(Tactic):
         lifts.call(rows[new], number[new], stop[new], deciding.frame)
         held = (number != NOBODY) & new
         held &= away < self._rims(number, stop, held, deciding)
+        self._step_back(number, stop, held, deciding, desired)
         in_car = np.flatnonzero(inside & ~new)
         if len(in_car):
             spots = lifts.spots(rows[in_car])
@@ -105,6 +106,26 @@ class RideLifts(Tactic):
             desired.speeds[in_car] = slow_down(desired.speeds[in_car], left)
         if held.any():
             deciding.hold(desired, held)
+
+    def _step_back(
+        self,
+        number: NDArray[np.int64],
+        stop: NDArray[np.int64],
+        held: NDArray[np.bool_],
+        deciding: Deciding,
+        desired: Desired,
+    ) -> None:
+        """Send those who wait in a doorway to the place before it, instead of holding them."""
+        cores = deciding.inside.crowd.core[deciding.pedestrians]
+        for lift, k in pairs_of(number[held], stop[held]):
+            shaft = self._lifts.shafts[lift]
+            reach = -shaft.before - cores
+            back = held & (number == lift) & (stop == k)
+            back &= shaft.in_car(k, deciding.positions, reach)
+            if back.any():
+                held &= ~back
+                desired.points = desired.points.copy()
+                desired.points[back] = shaft.before_door(k)
 
     def _bound_for(
         self, deciding: Deciding, desired: Desired, who: NDArray[np.bool_]
@@ -141,8 +162,13 @@ class RideLifts(Tactic):
         """(n,) metres from the door within which those who call wait: a half-circle with room for
         all of them."""
         crowd, rims = deciding.inside.crowd, np.zeros(len(number))
-        for lift, k in {(int(a), int(b)) for a, b in zip(number[calls], stop[calls], strict=True)}:
+        for lift, k in pairs_of(number[calls], stop[calls]):
             cores = crowd.core[self._lifts.waiting(lift, k, crowd)[0]]
             area = float((np.pi * (cores + APART) ** 2).sum())
             rims[calls & (number == lift) & (stop == k)] = KEEPS_OFF + np.sqrt(2.0 * area / np.pi)
         return rims
+
+
+def pairs_of(lifts: NDArray[np.int64], stops: NDArray[np.int64]) -> list[tuple[int, int]]:
+    """The lifts and stops among these, each pair once."""
+    return sorted(set(zip(lifts.tolist(), stops.tolist(), strict=True)))
