@@ -145,7 +145,7 @@ class Dynamics(Saved):
         shut = model.doors.advance(now)
         self._let_in()
         lifts, escalators = self._scene.lifts, self._scene.escalators
-        lifts.advance(now, people.present, crowd, self._scene.environment)
+        shut |= lifts.advance(now, people.present, crowd)
         self._ride(people.present)
         if now == 0:
             types = [each.name for each in model.pedestrian_types]
@@ -289,12 +289,13 @@ class Dynamics(Saved):
         return self._plan_version != self._scene.plan.version
 
     def _replan(self) -> None:
-        """Stop people whom a change of the floor plan blocks; they decide in this frame."""
+        """Stop people whom a change of walls or doors blocks; they decide in this frame."""
         scene, rows, now = self._scene, self._model.population.present, self._model.frame
-        self._plan_version = scene.plan.version
         # Those who stop lose their paths, on which crossed gates are found.
         scene.journeys.advance(rows, now, scene.crowd, scene.repertoire.table, self._model.rng)
-        self._model.refuges.look_over(rows, scene.crowd)
+        if self._plan_has_changed:
+            self._model.refuges.look_over(rows, scene.crowd)
+        self._plan_version = scene.plan.version
         stop_where_blocked(
             rows,
             now,
@@ -311,20 +312,17 @@ class Dynamics(Saved):
         deciding, soonest = due(rows, now, self._scene.crowd.records)
         self._next = LONG_AFTER  # brought forward if a behaviour adds people meanwhile
         if len(deciding):
-            scene, crowd, rng = self._scene, self._scene.crowd, self._model.rng
-            scene.journeys.advance(deciding, now, crowd, scene.repertoire.table, rng)
-            free = deciding
-            if len(scene.lifts):
-                free = scene.lifts.stand(deciding, now, crowd, scene.rules.standing)
-            if len(free):
-                self._decide(free)
+            self._decide(deciding)
             # Twins may have had the records grow.
-            soonest = min(soonest, due(deciding, now, crowd.records)[1])
+            soonest = min(soonest, due(deciding, now, self._scene.crowd.records)[1])
         self._next = min(self._next, soonest)
 
     def _decide(self, deciding: NDArray[np.int64]) -> None:
         model, scene, people = self._model, self._scene, self._model.population
         inside = people.present
+        scene.journeys.advance(
+            deciding, model.frame, scene.crowd, scene.repertoire.table, model.rng
+        )
         change_sheets(scene.strips, deciding, scene.crowd)
         model.waits.evaluate(deciding, model.frame, scene.crowd)
         everybody = people.departed.together_with(inside)

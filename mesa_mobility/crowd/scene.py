@@ -118,6 +118,6 @@ def make_scene(
         crowd=Crowd(64, fields),
         reach=float(reach + largest) + 0.02,
         strips=strips_of(plan.seams),
-        lifts=Lifts(plan.shafts),
+        lifts=Lifts(plan.shafts, environment),
         escalators=Escalators(plan.seams, float(reach + 2.0 * largest) + 0.02),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, ClassVar, overload
 
 import numpy as np
@@ -107,6 +107,7 @@ class Doors(Sequence[DoorControl], Saved):
         self._plan = plan
         self._environment = environment
         self._controls: list[DoorControl] = []
+        self._shut: frozenset[str] = frozenset()
 
     @overload
     def __getitem__(self, index: int) -> DoorControl: ...
@@ -131,7 +132,7 @@ class Doors(Sequence[DoorControl], Saved):
         """The doors, who has passed each, and which are shut."""
         return {
             "doors": [(each.door, each.state()) for each in self._controls],
-            "shut": sorted(self._environment.shut),
+            "shut": sorted(self._shut),
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
@@ -139,7 +140,7 @@ class Doors(Sequence[DoorControl], Saved):
         self._controls.clear()
         for door, control in state["doors"]:
             self.add(door).restore(control)
-        self._environment.shut = frozenset(state["shut"])
+        self._shut_openings(state["shut"])
 
     def add(self, door: Door) -> DoorControl:
         """Let a gate or exit close by itself from now on.
@@ -164,10 +165,11 @@ class Doors(Sequence[DoorControl], Saved):
         """
         for each in self._controls:
             each.follow_times(frame)
-        before = self._environment.shut
-        shut = frozenset(each.door.name for each in self._controls if each.shut)
-        self._environment.shut = shut
-        return bool(shut - before)
+        return self._shut_openings(each.door.name for each in self._controls if each.shut)
+
+    def _shut_openings(self, names: Iterable[str]) -> bool:
+        self._shut = frozenset(names)
+        return self._environment.shut_openings("doors", self._shut)
 
     def look(self, rows: NDArray[np.int64], before: NDArray[np.float64], crowd: Crowd) -> None:
         """Count those who have crossed a line in a frame.

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.crowd.lifts.carrying import carry
 from mesa_mobility.crowd.lifts.rides import Rides
 from mesa_mobility.crowd.lifts.spots import THERE, free_spot, swapped_spots
 from mesa_mobility.crowd.options.table import FRAMES_A_SECOND
@@ -28,9 +27,6 @@ EVERY = 3
 DWELL = 3 * FRAMES_A_SECOND
 """Frames for which the doors stay open at least after the last person was let in."""
 
-STANDS = 45
-"""Frames for which people in a car that is under way stand before they are told so again."""
-
 GIVES_UP = 20 * FRAMES_A_SECOND
 """Frames after which those who have not got in step back, and wait for the next ride."""
 
@@ -44,8 +40,11 @@ class Lifts(Saved):
     all are in, or have not come for a while, the car goes to the nearest level at which somebody
     wants to get out.
 
+    The door at a stop is shut unless the car is there with open doors.
+
     Args:
         shafts: the lifts of the floor plan.
+        environment: walls and routes, in which doors are shut.
 
     Attributes:
         at: (lifts,) number of the stop at which each car is, or to which it goes.
@@ -54,13 +53,25 @@ class Lifts(Saved):
         log: the rides with people, which tells how high they were.
     """
 
-    def __init__(self, shafts: tuple[Shaft, ...]) -> None:
+    def __init__(self, shafts: tuple[Shaft, ...], environment: Environment) -> None:
         self.shafts, self.log = shafts, Rides(shafts, EVERY)
+        self._environment = environment
         count = len(shafts)
         self.at, self.trips, self.carried, self._open, self._since = np.zeros((5, count), np.int64)
         self._from = np.full(count, NOBODY)
         self._rides, self._to, self._calls, self._stop, self._called = np.empty((5, 0), np.int64)
         self._spot = np.empty((0, 2))
+        self._shut_doors()
+
+    def _shut_doors(self) -> bool:
+        """Shut the doors where no car is; whether one is that was open before."""
+        shut = [
+            gate.name
+            for lift, shaft in enumerate(self.shafts)
+            for stop, gate in enumerate(shaft.gates)
+            if self._from[lift] != NOBODY or self.at[lift] != stop
+        ]
+        return self._environment.shut_openings("lifts", frozenset(shut))
 
     def members(self) -> Mapping[str, Kind]:
         """What the members of ``state`` are."""
@@ -105,6 +116,7 @@ class Lifts(Saved):
                 raise ContentError(f"lifts, {name}: has a stop that the lift does not have")
         for name in self.members():
             setattr(self, name, state[name])
+        self._shut_doors()
 
     def __len__(self) -> int:
         return len(self.shafts)
@@ -125,32 +137,6 @@ class Lifts(Saved):
             for stop in range(len(shaft.stops)):
                 found[shaft.in_car(stop, points)] = number
         return found
-
-    def stand(
-        self, rows: NDArray[np.int64], frame: int, crowd: Crowd, standing: NDArray[np.int32]
-    ) -> NDArray[np.int64]:
-        """Have those who ride a car that is under way stand; the others decide.
-
-        Args:
-            rows: (n,) people whose movements have ended.
-            frame: now.
-            crowd: the crowd.
-            standing: (types,) standing cluster of each type.
-
-        Returns:
-            (m,) rows of those who decide.
-        """
-        self._make_room(rows)
-        # The last is for those who ride no lift.
-        under_way = np.append(self._from != NOBODY, False)[self._rides[rows]]
-        who = rows[under_way]
-        if len(who):
-            facing = np.column_stack([np.cos(crowd.heading[who]), np.sin(crowd.heading[who])])
-            # A car that has come stands until the next look at it.
-            until = max(int(self._open[self._rides[who]].min()), self.next_look(frame))
-            carry(who, np.zeros(2), facing, frame, min(until, frame + STANDS), crowd)
-            crowd.cluster[who] = standing[crowd.type_index[who]]
-        return rows[~under_way]
 
     def shut_in(
         self, rows: NDArray[np.int64], crowd: Crowd, is_open: Callable[[str], bool]
@@ -201,26 +187,24 @@ class Lifts(Saved):
         """The next frame after this one in which something may happen."""
         return (frame // EVERY + 1) * EVERY
 
-    def advance(
-        self, frame: int, inside: NDArray[np.int64], crowd: Crowd, environment: Environment
-    ) -> None:
-        """Let people in and out, and move the cars.
+    def advance(self, frame: int, inside: NDArray[np.int64], crowd: Crowd) -> bool:
+        """Let people in and out, and move the cars; whether a door has shut.
 
         Args:
             frame: now.
             inside: (n,) rows of the people inside.
             crowd: the crowd; those who ride are moved.
-            environment: the routes.
         """
         if frame % EVERY or not len(self._calls):
-            return
+            return False
         self._make_room(inside)
         for lift, shaft in enumerate(self.shafts):
             if frame < self._open[lift]:
                 continue
             if self._from[lift] != NOBODY:
                 self._arrive(lift, frame, inside, crowd)
-            self._stand(lift, shaft, frame, inside, crowd, environment)
+            self._stand(lift, shaft, frame, inside, crowd)
+        return self._shut_doors()
 
     def _arrive(self, lift: int, frame: int, inside: NDArray[np.int64], crowd: Crowd) -> None:
         """Open the doors: those who have ridden are at the new stop from now on."""
@@ -239,11 +223,11 @@ class Lifts(Saved):
         frame: int,
         inside: NDArray[np.int64],
         crowd: Crowd,
-        environment: Environment,
     ) -> None:
         """Let people out, then in, then go."""
         stop = int(self.at[lift])
-        there = self._in_car(lift, stop, inside, crowd)
+        everybody = np.column_stack([crowd.x[inside], crowd.y[inside]])
+        there = inside[shaft.reached(stop, everybody, crowd.core[inside])]
         comes = (self._calls[there] == lift) & (self._stop[there] == stop)
         if ((self._rides[there] != lift) & ~comes).any():
             self._since[lift] = frame
@@ -252,7 +236,7 @@ class Lifts(Saved):
         ours = inside[self._rides[inside] == lift]
         if waited >= GIVES_UP and len(ours):
             self._rides[ours[~self._are_in(lift, stop, ours, crowd)]] = NOBODY
-        elif self._admit(lift, stop, inside, crowd, environment):
+        elif self._admit(lift, stop, inside, crowd):
             self._since[lift], waited = frame, 0
         ours = inside[self._rides[inside] == lift]
         points = np.column_stack([crowd.x[ours], crowd.y[ours]])
@@ -285,14 +269,7 @@ class Lifts(Saved):
         self._open[lift] = frame + round(seconds * FRAMES_A_SECOND)
         self.trips[lift] += 1
 
-    def _admit(
-        self,
-        lift: int,
-        stop: int,
-        inside: NDArray[np.int64],
-        crowd: Crowd,
-        environment: Environment,
-    ) -> bool:
+    def _admit(self, lift: int, stop: int, inside: NDArray[np.int64], crowd: Crowd) -> bool:
         """Let those in who fit, those nearest to the door first; whether anybody was."""
         shaft, admitted = self.shafts[lift], False
         ours = inside[self._rides[inside] == lift]
@@ -300,21 +277,19 @@ class Lifts(Saved):
             if len(ours) >= shaft.capacity:
                 break
             spot = free_spot(shaft, stop, crowd.core[row], self._spot[ours], crowd.core[ours])
-            to = self._destination(shaft, stop, row, crowd, environment)
+            to = self._destination(shaft, stop, row, crowd)
             if spot is None or to == stop:
                 continue
             self._rides[row], self._to[row], self._spot[row] = lift, to, spot
             ours, admitted = np.append(ours, row), True
         return admitted
 
-    def _destination(
-        self, shaft: Shaft, stop: int, row: int, crowd: Crowd, environment: Environment
-    ) -> int:
+    def _destination(self, shaft: Shaft, stop: int, row: int, crowd: Crowd) -> int:
         """The stop from which somebody's way out is shortest, the ride included."""
         count = len(shaft.stops)
         doors = np.array([shaft.before_door(k) for k in range(count)])
         destinations = crowd.destination[[row]].astype(np.int64).repeat(count)
-        lengths = environment.targets(doors, destinations).distances
+        lengths = self._environment.targets(doors, destinations).distances
         ways = [lengths[k] + shaft.ride_length(stop, k) for k in range(count)]
         # The way from this stop leads through the lift as well, and is as long as that by the best.
         ways[stop] = np.inf
@@ -324,21 +299,13 @@ class Lifts(Saved):
     def _are_in(
         self, lift: int, stop: int, rows: NDArray[np.int64], crowd: Crowd
     ) -> NDArray[np.bool_]:
-        """(n,) whether people are at their spot or wholly behind the line of the door, now and when
-        their movement ends."""
-        shaft, found = self.shafts[lift], np.ones(len(rows), np.bool_)
-        for x, y in ((crowd.x, crowd.y), (crowd.to_x, crowd.to_y)):
-            points = np.column_stack([x[rows], y[rows]])
-            at_spot = np.hypot(*(points - self._spot[rows]).T) < THERE
-            found &= at_spot | shaft.in_car(stop, points, crowd.core[rows] - shaft.before)
+        """(n,) whether people are at their spot or wholly behind the line of the door."""
+        shaft, points = self.shafts[lift], np.column_stack([crowd.x[rows], crowd.y[rows]])
+        at_spot = np.hypot(*(points - self._spot[rows]).T) < THERE
+        found: NDArray[np.bool_] = at_spot | shaft.in_car(
+            stop, points, crowd.core[rows] - shaft.before
+        )
         return found
-
-    def _in_car(
-        self, lift: int, stop: int, inside: NDArray[np.int64], crowd: Crowd
-    ) -> NDArray[np.int64]:
-        """Rows of those inside who are in a car at a stop."""
-        points = np.column_stack([crowd.x[inside], crowd.y[inside]])
-        return inside[self.shafts[lift].in_car(stop, points)]
 
     def _make_room(self, rows: NDArray[np.int64]) -> None:
         count = int(rows.max(initial=-1)) + 1

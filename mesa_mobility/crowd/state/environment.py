@@ -53,6 +53,7 @@ class Environment(Saved):
     ) -> None:
         self.plan = plan
         self.shut: frozenset[str] = frozenset()
+        self._shut_by: dict[str, frozenset[str]] = {}
         self._reach = reach
         self._of_types = tuple(core_radii)
         self._climbs = (True,) * len(core_radii) if climbs is None else tuple(climbs)
@@ -320,6 +321,18 @@ class Environment(Saved):
         if is_point(names):
             return f"({names[0]:.2f}, {names[1]:.2f})"
         return "any exit" if names is None else " or ".join(repr(name) for name in names)
+
+    def shut_openings(self, whose: str, names: frozenset[str]) -> bool:
+        """Note which gates and exits are shut now; whether more are than before.
+
+        Args:
+            whose: what shuts them, which shuts no others from now on.
+            names: their names.
+        """
+        before = self.shut
+        self._shut_by[whose] = names
+        self.shut = frozenset[str]().union(*self._shut_by.values())
+        return bool(self.shut - before)
 
     @property
     def surroundings(self) -> Surroundings:

@@ -119,9 +119,8 @@ class RideLifts(Tactic):
         cores = deciding.inside.crowd.core[deciding.pedestrians]
         for lift, k in pairs_of(number[held], stop[held]):
             shaft = self._lifts.shafts[lift]
-            reach = -shaft.before - cores
             back = held & (number == lift) & (stop == k)
-            back &= shaft.in_car(k, deciding.positions, reach)
+            back &= shaft.reached(k, deciding.positions, cores)
             if back.any():
                 held &= ~back
                 desired.points = desired.points.copy()

@@ -94,6 +94,13 @@ class Shaft:
         )
         return inside
 
+    def reached(
+        self, stop: int, points: NDArray[np.float64], cores: NDArray[np.float64]
+    ) -> NDArray[np.bool_]:
+        """(n,) whether bodies at (n, 2) points, of (n,) core radii, metres, are in the car as drawn
+        at a stop, or across the line of its door."""
+        return self.in_car(stop, points, -self.before - cores)
+
     def door(self, stop: int) -> NDArray[np.float64]:
         """(2,) middle of the door at a stop, metres."""
         return self._axes(stop)[0]

@@ -10,8 +10,8 @@ import pytest
 from mesa_mobility import PedestrianModel, Trajectories
 from mesa_mobility.compiled import threads
 from mesa_mobility.crowd.lifts.belt_places import BeltPlaces
-from mesa_mobility.crowd.lifts.carrying import carry
 from mesa_mobility.crowd.lifts.clear_way import way_is_clear
+from mesa_mobility.crowd.lifts.escalators import carry
 from mesa_mobility.errors import ContentError, ModelError
 from mesa_mobility.results import check_safety, climbs
 from mesa_mobility.schema import Members, check

@@ -78,57 +78,75 @@ def until_the_car_goes(model):
         model.step()
 
 
-def test_people_in_a_car_that_is_under_way_stand_though_others_ask_them_to_make_way(monkeypatch):
+def asked_to_make_way(model, monkeypatch, place):
+    """A function that has the first person go to a place on level 1 out of the way of the other."""
+    aside = model.building.places([place], level=1)
+    monkeypatch.setattr(give_way, "places_aside", lambda *_: aside)
+    [tactic] = [each for each in model.tactics if each.name == "giving_way"]
+
+    def ask():
+        notes = tactic._notes
+        notes["first"][0], notes["asked_by"][0], notes["until"][0] = 1, 1, 1e6
+
+    return ask
+
+
+def test_a_rider_who_makes_way_stays_in_a_car_that_is_under_way(monkeypatch):
     building = office(stairs=False)
     model = PedestrianModel(building, population="wheelchair_manual: 1.0", rng=1, frames_per_step=1)
     model.add_pedestrians(building.places([(20.45, 4.0), (12.0, 4.0)], level=1))
     until_the_car_goes(model)
-    outside = building.places([(20.45, 5.4)], level=1)
-    monkeypatch.setattr(give_way, "places_aside", lambda *_: outside)
-    [tactic] = [each for each in model.tactics if each.name == "giving_way"]
-    # 1.5 s is the longest movement, and the ride takes 6 s.
-    places = []
+    # The other, to whom nobody is in the way, is to pass from the outside.
+    ask = asked_to_make_way(model, monkeypatch, (20.45, 5.4))
+    steps = 0
     while model.lifts._from[0] >= 0:
-        notes = tactic._notes
-        notes["first"][0], notes["asked_by"][0], notes["until"][0] = 1, 1, 1e6
-        places.append((model.crowd.x[0], model.crowd.y[0]))
+        ask()
         model.step()
-    assert len(places) >= 180
-    assert set(places[45:]) == {places[-1]}
-    # They set out in the frame in which the doors open.
-    moved = places[-1] + model.lifts.shafts[0].shift(1, 0) - (model.crowd.x[0], model.crowd.y[0])
-    assert np.hypot(*moved) < 0.05
+        steps += 1
+        assert 0 in np.concatenate(riders(model))
+    assert steps >= 150
 
 
-def test_doors_do_not_close_on_somebody_who_steps_out():
-    building = office(stairs=False)
-    model = PedestrianModel(building, population="wheelchair_manual: 1.0", rng=1, frames_per_step=3)
-    model.add_pedestrians(building.places([(20.45, 4.0)], level=1))
-    crowd, lifts = model.crowd, model.lifts
-    while not len(riders(model)[1]) or crowd.stride[0]:
-        lifts._since[0] = model.frame  # so that the doors stay open
+def test_nobody_makes_way_into_a_shaft_without_a_car(monkeypatch):
+    building = office()
+    model = PedestrianModel(building, rng=1, frames_per_step=1)
+    model.add_pedestrians(building.places([(20.45, 5.8), (12.0, 4.0)], level=1))
+    model.step()
+    # Those who climb do not call the car, which is on level 0.
+    ask = asked_to_make_way(model, monkeypatch, (20.45, 7.3))
+    line = building.places([(20.45, 6.5)], level=1)[0, 1]
+    nearest = 10.0
+    for _ in range(90):
+        ask()
         model.step()
-    assert lifts._from[0] < 0
-    lifts._since[0] = model.frame - 100  # 3 s are over, 20 s are not
-    own = crowd.to_y[0]
-    crowd.to_y[0] = building.places([(20.45, 6.0)], level=1)[0, 1]
-    lifts.advance(model.frame, model.rows, crowd, model._scene.environment)
-    assert lifts._from[0] < 0
-    crowd.to_y[0] = own
-    lifts.advance(model.frame, model.rows, crowd, model._scene.environment)
-    assert lifts._from[0] == 1
+        nearest = min(nearest, line - model.crowd.y[0] - model.crowd.core[0])
+    assert model.lifts.at.tolist() == [0]
+    # Without the door they would be in the shaft after 2 s.
+    assert 0.0 <= nearest < 0.5
+
+
+def test_doors_are_shut_where_no_car_is():
+    building = office(storeys=3, stairs=False)
+    model = PedestrianModel(building, population="wheelchair_manual: 1.0", rng=1, frames_per_step=1)
+    model.add_pedestrians(building.places([(20.45, 4.0)], level=2))
+    shut, car, seen = model._scene.environment, model.lifts, set()
+    while model.inside and model.elapsed < 300:
+        model.step()
+        stops = {int(car.at[0])} if car._from[0] < 0 else set()
+        assert shut.shut == {f"car at level {k}" for k in range(3) if k not in stops}
+        seen.add(tuple(stops))
+    assert seen == {(0,), (2,), ()}
 
 
 @pytest.mark.parametrize("y", [6.3, 7.3])
-def test_who_stands_in_the_door_of_a_car_that_is_elsewhere_steps_back_and_waits_for_it(y):
+def test_who_stands_in_the_door_of_a_car_that_is_elsewhere_waits_for_it(y):
     # 0.2 m before the line of the door, y = 6.5, and where the car will be.
     building = office(stairs=False)
     model = PedestrianModel(building, population="wheelchair_manual: 1.0", rng=1, frames_per_step=1)
     model.add_pedestrians(building.places([(20.45, y)], level=1))
     while model.lifts._rides[:1].max(initial=-1) < 0 and model.time < 60.0:
         model.step()
-    # They have stepped out of the way of the car.
-    assert model.crowd.y[0] < building.places([(20.45, 6.5 - model.crowd.core[0])], level=1)[0, 1]
+        assert len(riders(model)[1]) == (y > 6.5)
     model.run(max_seconds=300)
     assert (model.inside, model.lifts.carried.tolist(), model.lifts.trips.tolist()) == (0, [1], [2])
 
