@@ -107,22 +107,17 @@ def test_a_rider_who_makes_way_stays_in_a_car_that_is_under_way(monkeypatch):
     assert steps >= 150
 
 
-def test_nobody_makes_way_into_a_shaft_without_a_car(monkeypatch):
+def test_people_can_step_into_a_car_and_into_no_shaft_without_one():
     building = office()
-    model = PedestrianModel(building, rng=1, frames_per_step=1)
-    model.add_pedestrians(building.places([(20.45, 5.8), (12.0, 4.0)], level=1))
-    model.step()
-    # Those who climb do not call the car, which is on level 0.
-    ask = asked_to_make_way(model, monkeypatch, (20.45, 7.3))
-    line = building.places([(20.45, 6.5)], level=1)[0, 1]
-    nearest = 10.0
-    for _ in range(90):
-        ask()
-        model.step()
-        nearest = min(nearest, line - model.crowd.y[0] - model.crowd.core[0])
-    assert model.lifts.at.tolist() == [0]
-    # Without the door they would be in the shaft after 2 s.
-    assert 0.0 <= nearest < 0.5
+    model = PedestrianModel(building, rng=1)
+    places = [building.places([(20.45, 6.2)], level=level)[0] for level in (0, 1)]
+    model.add_pedestrians(places, headings=np.pi / 2.0)
+    goals = [building.places([(20.45, 7.4)], level=level)[0] for level in (0, 1)]
+    wishes = model.wishes(model.rows, np.array(goals), np.full(2, 1.3))
+    ends = [wishes.paths[k, 1, : wishes.pieces[k] + 1].max() for k in (0, 1)]
+    # The line of the door is y = 6.5. The car is on level 0.
+    assert ends[0] > 6.5
+    assert ends[1] <= 6.5 - model.crowd.core[1] + 1e-6
 
 
 def test_doors_are_shut_where_no_car_is():
