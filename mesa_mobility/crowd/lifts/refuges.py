@@ -147,18 +147,20 @@ class Refuges(Saved):
         """
         sent = np.zeros(len(rows), np.bool_)
         self._make_room(rows)
-        for k in np.flatnonzero(self.cut_off(rows, crowd)).tolist():
-            row, kind = rows[k], int(crowd.type_index[rows[k]])
-            place, meant = np.array([[crowd.x[row], crowd.y[row]]]), crowd.destination[row]
-            for number, middle in enumerate(self._middles):
-                if middle is None:
-                    continue
-                to = self._site.point(middle, kind)
-                way = float(self._site.targets(place, np.array([to])).distances[0])
-                if way < crowd.route[row]:
-                    crowd.destination[row], crowd.route[row] = to, way
-                    self._number[row], self._goal[row], self._meant[row] = number, to, meant
-                    self._there[row], self._until[row], sent[k] = False, NOWHERE, True
+        lost = np.flatnonzero(self.cut_off(rows, crowd))
+        who = rows[lost]
+        places = np.column_stack([crowd.x[who], crowd.y[who]])
+        kinds, meant = crowd.type_index[who].tolist(), crowd.destination[who]
+        for number, middle in enumerate(self._middles if len(lost) else ()):
+            if middle is None:
+                continue
+            to = np.array([self._site.point(middle, kind) for kind in kinds], dtype=np.int64)
+            ways = self._site.targets(places, to).distances
+            nearer = ways < crowd.route[who]
+            own = who[nearer]
+            crowd.destination[own], crowd.route[own] = to[nearer], ways[nearer]
+            self._number[own], self._goal[own], self._meant[own] = number, to[nearer], meant[nearer]
+            self._there[own], self._until[own], sent[lost[nearer]] = False, NOWHERE, True
         return sent
 
     def spots(

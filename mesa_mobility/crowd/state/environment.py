@@ -72,6 +72,8 @@ class Environment(Saved):
         self._routers: list[Router | None] = [None] * len(self._radii)
         self._destinations = destinations
         self._climber: Router | None = None
+        self._made_when_open = (-1, 0)
+        self._when_open: dict[int, Router] = {}
         self._version = -1
         self.corners = Corners(self._routers)
 
@@ -314,7 +316,13 @@ class Environment(Saved):
 
     def _router_when_open(self, body: int) -> Router:
         """A router with everything open; destinations have the same numbers."""
-        return self._new_router(self.plan.altered(closed=()), self._clearances[body])
+        made = (self.plan.version, len(self._destinations))
+        if self._made_when_open != made:
+            self._made_when_open, self._when_open = made, {}
+        if body not in self._when_open:
+            plan = self.plan.altered(closed=())
+            self._when_open[body] = self._new_router(plan, self._clearances[body])
+        return self._when_open[body]
 
     def _text(self, destination: int) -> str:
         names = self._destinations[destination // self.bodies]
