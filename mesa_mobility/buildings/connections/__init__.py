@@ -1,1 +1,1 @@
-"""What joins the levels of a building: stairs, ramps, escalators and lifts."""
+"""Connections between the levels of a building: stairs, ramps, escalators and lifts."""
