@@ -56,6 +56,7 @@ class Lifts(Saved):
     def __init__(self, shafts: tuple[Shaft, ...], environment: Environment) -> None:
         self.shafts, self.log = shafts, Rides(shafts, EVERY)
         self._environment = environment
+        self._doors = [[gate.name for gate in each.gates] for each in shafts]
         count = len(shafts)
         self.at, self.trips, self.carried, self._open, self._since = np.zeros((5, count), np.int64)
         self._from = np.full(count, NOBODY)
@@ -66,9 +67,9 @@ class Lifts(Saved):
     def _shut_doors(self) -> bool:
         """Shut the doors where no car is; whether one is that was open before."""
         shut = [
-            gate.name
-            for lift, shaft in enumerate(self.shafts)
-            for stop, gate in enumerate(shaft.gates)
+            name
+            for lift, names in enumerate(self._doors)
+            for stop, name in enumerate(names)
             if self._from[lift] != NOBODY or self.at[lift] != stop
         ]
         return self._environment.shut_openings("lifts", frozenset(shut))

@@ -72,35 +72,20 @@ def test_everybody_gets_out_by_stairs_or_lift(rng):
     assert check_safety(tracks, plan.walls, plan.free, building=building).passed
 
 
-def until_the_car_goes(model):
-    """Step until somebody rides."""
-    while not model.lifts.carried[0]:
-        model.step()
-
-
-def asked_to_make_way(model, monkeypatch, place):
-    """A function that has the first person go to a place on level 1 out of the way of the other."""
-    aside = model.building.places([place], level=1)
-    monkeypatch.setattr(give_way, "places_aside", lambda *_: aside)
-    [tactic] = [each for each in model.tactics if each.name == "giving_way"]
-
-    def ask():
-        notes = tactic._notes
-        notes["first"][0], notes["asked_by"][0], notes["until"][0] = 1, 1, 1e6
-
-    return ask
-
-
 def test_a_rider_who_makes_way_stays_in_a_car_that_is_under_way(monkeypatch):
     building = office(stairs=False)
     model = PedestrianModel(building, population="wheelchair_manual: 1.0", rng=1, frames_per_step=1)
     model.add_pedestrians(building.places([(20.45, 4.0), (12.0, 4.0)], level=1))
-    until_the_car_goes(model)
+    while not model.lifts.carried[0]:
+        model.step()
+    before = building.places([(20.45, 5.4)], level=1)
+    monkeypatch.setattr(give_way, "places_aside", lambda *_: before)
+    [tactic] = [each for each in model.tactics if each.name == "giving_way"]
     # The other, to whom nobody is in the way, is to pass from the outside.
-    ask = asked_to_make_way(model, monkeypatch, (20.45, 5.4))
     steps = 0
     while model.lifts._from[0] >= 0:
-        ask()
+        notes = tactic._notes
+        notes["first"][0], notes["asked_by"][0], notes["until"][0] = 1, 1, 1e6
         model.step()
         steps += 1
         assert 0 in np.concatenate(riders(model))
