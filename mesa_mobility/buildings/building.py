@@ -37,8 +37,9 @@ class Building:
 
     People are simulated in a plane, in which the levels and landings lie side by side as sheets.
     Each flight of stairs is drawn on both sheets that it joins, up to 0.3 m beyond its end. At its
-    middle people change from one drawing to the other. So all that is made for floor plans works
-    in buildings. `true_places` and `plane_places` lead from the plane to true coordinates and back.
+    middle people change from one drawing to the other. So routes, collision tests and behaviours
+    need not know of levels. `true_places` and `plane_places` lead from the plane to true
+    coordinates and back.
 
     On a flight, people walk as in a speed zone: at a share of the speed of a level floor, after the
     SFPE Handbook, and more slowly up than down (`Flight.factor`, `Flight.uphill`). On stairs
@@ -46,10 +47,10 @@ class Building:
     as the treads, if their type has maps for stairs (`PedestrianType.up`, `PedestrianType.down`).
     Escalators carry them. People who use no stairs use ramps and lifts.
 
-    A flight should be at least 2.7 m long in plan, twice the longest step: on a shorter one people
-    see less far and walk more slowly. Where a flight passes over a level, or under it, its place
-    on the plan of the levels that it joins is taken from the floor, with 0.35 m beyond it. A level
-    has no floor in the shaft of a lift that passes it.
+    On a flight shorter than 2.7 m in plan, twice the longest step, people see less far and walk
+    more slowly. The flights of many dog-legs are shorter. The place of a flight is taken from the
+    floor of both levels that it joins, with 0.35 m beyond its far end and 5 cm on either side. A
+    level has no floor in the shaft of a lift that passes it.
 
     Args:
         levels: at least one.
@@ -156,15 +157,16 @@ class Building:
 
         Features are those of a floor plan, each with the number of its `level`; walkable areas have
         an `elevation`. A feature of the kind `stairs` is their upper edge, the end on the left of
-        somebody who walks down first. It has `from` and `to`, the numbers of the upper and the
-        lower level, `risers`, `tread` and `type`, straight or dog_leg; a dog-leg also `turn`,
-        `well` and, if it is not as deep as wide, `landing`. A feature of the kind `ramp` is its
-        upper edge, with `from`, `to`, `length` and `factor`; one of the kind `escalator` has the
-        other arguments of `Escalator` in place of `factor`. A feature of the kind `lift` is the
-        door, with the numbers of its `levels` and the other arguments of `Lift`. One of the kind
-        `refuge` is an area. Stairs, ramps, escalators and lifts have a list `closed` of the names
-        of their gates that are closed. A building of one level without refuges is written as its
-        floor plan.
+        a person who walks down first. It has `from` and `to`, the numbers of the upper and the
+        lower level, `risers`, `tread` and `type`: straight, dog_leg or flights. A dog-leg also has
+        `turn` and `well`, stairs of several flights have `flights` and `turns`, and both have
+        `landing` if it was given. A feature of the kind `ramp` is its upper edge, with `from`,
+        `to`, `length` and `factor`. One of the kind `escalator` has the other arguments of
+        `Escalator` in place of `factor`. A feature of the kind `lift` is the door, with the numbers
+        of its `levels` and the other arguments of `Lift`. One of the kind `refuge` is an area.
+        Stairs, ramps, escalators and lifts have a list `closed` of the names of their gates that
+        are closed. A building of level 0 alone, at elevation 0 and without refuges, is written as
+        its floor plan.
         """
         first, plan = self.levels[0], self.floor_plan
         plain = first.number == 0 and first.elevation == 0.0 and not first.refuges

@@ -34,7 +34,7 @@ class Level:
         gates: doors, and other lines to cross, inside the walkable area.
         obstacles: polygons (shapely or WKT) to subtract.
         zones: parts of the floor where people walk more slowly.
-        refuges: parts of the floor where people wait who cannot leave.
+        refuges: parts of the floor in which people who cannot leave wait.
         rooms: named areas of the floor; by default they are found between the gates.
         name: for titles and files.
 

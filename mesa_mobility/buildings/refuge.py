@@ -10,7 +10,7 @@ from mesa_mobility.floorplan.floor.checks import read_polygon
 
 @dataclass(frozen=True)
 class Refuge:
-    """A refuge area: a part of a level where people wait who cannot leave.
+    """A refuge area: a part of a level in which people who cannot leave wait.
 
     Args:
         name: unique in the building.

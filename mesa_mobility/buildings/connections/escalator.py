@@ -35,17 +35,18 @@ class Escalator:
     move, along the slope. In plan people are slower by the cosine of the inclination.
 
     Args:
-        name: unique among the stairs, ramps, escalators and lifts of the building.
+        name: unique among the stairs, ramps, escalators, lifts, gates and exits of the building.
         upper: number of the upper level.
         lower: number of the lower level.
         head: its upper edge, two points (x, y) in metres on the upper level, the first on the left
             of somebody who looks down it. Its length is the width of the steps.
         length: metres from its upper to its lower edge, in plan.
         direction: "up" or "down", the way that it carries people; nobody walks the other way.
-        speed: along the slope, 0.1 to 1 m/s; EN 115-1 has 0.5, 0.65 and 0.75 m/s. With 0 it stands,
-            and people walk on it both ways as on stairs with the same steps.
-        capacity: people an hour whom it takes at most; by default one on each step 1 m wide: 6,750
-            at 0.75 m/s, half of the nominal 13,500, which is not reached.
+        speed: along the slope, 0.1 to 1 m/s; EN 115-1 has 0.5, 0.65 and 0.75 m/s. An escalator of
+            speed 0 stands: people walk on it both ways, as on stairs with the same steps.
+        capacity: people an hour whom it takes at most. The default is one person on each step 1 m
+            wide, and in proportion for other widths: 6,750 at 0.75 m/s and 1 m. The nominal 13,500
+            is not reached in practice.
 
     Raises:
         FloorPlanError: numbers out of range, or another direction.

@@ -23,12 +23,13 @@ _LEAST_DOOR, _LEAST_CAR = 0.7, 0.8
 class Lift:
     """A lift: a car that stops at several levels, with its door at the same place on all of them.
 
-    The car comes to where people wait, the longest first. It leaves when all have got in who have
-    room, and takes them to the levels from which their way out is shortest, without stopping for
-    others in between. It then returns for more.
+    The car comes to the level where a person has waited longest. It lets in as many people as have
+    room. It leaves 3 s after it let in the last of them, or later, when all are in. A person who is
+    not in after 20 s waits for the next ride. Each person rides to the level from which their way
+    out is shortest. The car does not stop for others in between.
 
     Args:
-        name: unique among the stairs and lifts of the building.
+        name: unique among the stairs, ramps, escalators, lifts, gates and exits of the building.
         levels: at least two, or their numbers.
         door: two points (x, y) in metres, the first on the left of somebody who walks in. Their
             distance is the clear width.

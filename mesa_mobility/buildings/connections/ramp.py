@@ -27,7 +27,7 @@ class Ramp:
     """A ramp from one level down to another, which everybody uses; `straight` makes it.
 
     Args:
-        name: unique among the stairs, ramps and lifts of the building.
+        name: unique among the stairs, ramps, escalators, lifts, gates and exits of the building.
         upper: number of the level from which it leads down.
         lower: number of the level to which it leads.
         head: its upper edge, two points (x, y) in metres on the upper level, the first on the left

@@ -71,7 +71,7 @@ class Stairs:
     """Stairs from one level down to another; `straight`, `dog_leg` and `of_flights` make them.
 
     Args:
-        name: unique in the building.
+        name: unique among the stairs, ramps, escalators, lifts, gates and exits of the building.
         upper: number of the level from which they lead down.
         lower: number of the level to which they lead.
         head: their upper edge, two points (x, y) in metres on the upper level, the first on the
