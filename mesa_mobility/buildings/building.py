@@ -158,7 +158,8 @@ class Building:
         an `elevation`. A feature of the kind `stairs` is their upper edge, the end on the left of
         somebody who walks down first. It has `from` and `to`, the numbers of the upper and the
         lower level, `risers`, `tread` and `type`, straight or dog_leg; a dog-leg also `turn`,
-        `well` and, if it is not as deep as wide, `landing`. A feature of the kind `ramp` is its
+        `well` and, if it is not as deep as wide, `landing`. Stairs without handrails on both sides
+        have `handrails`. A feature of the kind `ramp` is its
         upper edge, with `from`, `to`, `length` and `factor`; one of the kind `escalator` has the
         other arguments of `Escalator` in place of `factor`. A feature of the kind `lift` is the
         door, with the numbers of its `levels` and the other arguments of `Lift`. One of the kind
