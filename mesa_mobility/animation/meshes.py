@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -89,9 +89,48 @@ def prism(ring: NDArray[np.float64], bottom: float, high: float) -> Mesh:
     return joined([_lid(ring, bottom + high), sides])
 
 
+def post(middle: NDArray[np.float64], thick: float, bottom: float, top: float) -> Mesh:
+    """An upright post with a square section of a thickness about a (2,) place, open below."""
+    square = 0.5 * thick * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
+    return prism(middle + square, bottom, top - bottom)
+
+
+def bar(start: NDArray[np.float64], end: NDArray[np.float64], thick: float) -> Mesh:
+    """A bar between two (3,) places, the ends of the middle line of its upper side.
+
+    It is not upright. Its section is a square of a thickness.
+    """
+    along = end - start
+    aside = 0.5 * thick * np.array([along[1], -along[0], 0.0]) / np.hypot(along[0], along[1])
+    upper = np.array([start + aside, end + aside, end - aside, start - aside])
+    lower = upper - [0.0, 0.0, thick]
+    sides = [[lower[k], lower[k - 3], upper[k - 3], upper[k]] for k in range(4)]
+    corners = np.array([upper, lower[::-1], *sides])
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    triangles = (4 * np.arange(len(corners))[:, None, None] + SQUARE).reshape(-1, 3)
+    return (
+        corners.reshape(-1, 3).astype(np.float32),
+        np.repeat(normals, 4, axis=0).astype(np.float32),
+        triangles,
+    )
+
+
 def joined(meshes: Iterable[Mesh]) -> Mesh:
     """One mesh of several."""
     vertices, normals, triangles = zip(*meshes, strict=True)
     starts = np.cumsum([0, *(len(each) for each in vertices[:-1])])
     moved = [part + start for part, start in zip(triangles, starts, strict=True)]
     return np.concatenate(vertices), np.concatenate(normals), np.concatenate(moved)
+
+
+def groups(meshes: Iterable[Mesh], most: int | None) -> Iterator[list[Mesh]]:
+    """Meshes, together as many as have no more vertices than that."""
+    group: list[Mesh] = []
+    for mesh in meshes:
+        if group and most is not None and sum(len(each[0]) for each in [*group, mesh]) > most:
+            yield group
+            group = []
+        group.append(mesh)
+    if group:
+        yield group

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.animation.buildings.storeys import drawn_building
 from mesa_mobility.animation.bundle import bank_arrays, bundled, figure_parts
 from mesa_mobility.animation.figures.aids import aid_of
 from mesa_mobility.animation.floor import drawn_floor
-from mesa_mobility.animation.storeys import drawn_building
 from mesa_mobility.bodies import PoseBank
 from mesa_mobility.bodies.motion import FRAME_RATE
 from mesa_mobility.bodies.sequence import stretches

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mesa_mobility.animation.buildings.storeys import storey_surfaces
 from mesa_mobility.animation.meshes import FLOOR, SQUARE, Surface
 from mesa_mobility.animation.solids import solid_surfaces, solids_of
-from mesa_mobility.animation.storeys import storey_surfaces
 from mesa_mobility.floorplan import FloorPlan
 
 if TYPE_CHECKING:
@@ -20,12 +20,12 @@ MARGIN = 0.5
 
 
 def surfaces(plan: FloorPlan | Building, most_vertices: int | None = None) -> Iterator[Surface]:
-    """The floor, walls and seats; of a building, each level and the stairs.
+    """The floor, walls and seats; of a building, each level, the stairs and the lifts.
 
     Args:
         plan: floor and walls, or a building.
-        most_vertices: of a mesh of walls, which are divided among as many meshes as that takes; all
-            of them are in one mesh if None.
+        most_vertices: of a mesh of walls, seats or handrails, which are divided among as many
+            meshes as that takes; all of a kind are in one mesh if None.
     """
     if not isinstance(plan, FloorPlan):
         yield from storey_surfaces(plan, most_vertices)

@@ -10,7 +10,16 @@ import numpy as np
 import shapely
 from shapely.geometry.polygon import orient
 
-from mesa_mobility.animation.meshes import WALL, WALL_HEIGHT, Mesh, Surface, flat, joined, upright
+from mesa_mobility.animation.meshes import (
+    WALL,
+    WALL_HEIGHT,
+    Mesh,
+    Surface,
+    flat,
+    groups,
+    joined,
+    upright,
+)
 
 if TYPE_CHECKING:
     from mesa_mobility.floorplan import FloorPlan
@@ -98,20 +107,8 @@ def solid_surfaces(
             parts.setdefault(sides, []).append(upright(edges, base, base + solid.top))
         parts.setdefault(tops, []).append(flat(solid.area, base + solid.top))
     for (name, colour), meshes in parts.items():
-        for group in _groups(meshes, most_vertices):
+        for group in groups(meshes, most_vertices):
             yield Surface(f"{name}{label}", *joined(group), colour, True)
-
-
-def _groups(meshes: Iterable[Mesh], most: int | None) -> Iterator[list[Mesh]]:
-    """Meshes, together as many as have no more vertices than that."""
-    group: list[Mesh] = []
-    for mesh in meshes:
-        if group and most is not None and sum(len(each[0]) for each in [*group, mesh]) > most:
-            yield group
-            group = []
-        group.append(mesh)
-    if group:
-        yield group
 
 
 def _polygons(area: shapely.Geometry) -> list[shapely.Polygon]:

@@ -9,6 +9,7 @@ from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility._numbers import is_number
 from mesa_mobility.buildings.connections.escalator import DOWN, Escalator
+from mesa_mobility.buildings.connections.flights import BOTH
 from mesa_mobility.buildings.connections.lift import Lift
 from mesa_mobility.buildings.connections.lines import Line
 from mesa_mobility.buildings.connections.ramp import Ramp
@@ -40,7 +41,7 @@ _OF_LIFTS = ("capacity", "speed", "door_s", "width", "depth", "everybody")
 
 _KNOWN = {
     STAIRS: (
-        *(*_OF_FLIGHTS, "risers", "tread", "type"),
+        *(*_OF_FLIGHTS, "risers", "tread", "type", "handrails"),
         *dict.fromkeys((*_OF_DOG_LEGS, *_OF_SEVERAL_FLIGHTS)),
     ),
     RAMP: (*_OF_FLIGHTS, "length", "factor"),
@@ -67,6 +68,8 @@ def feature_of_stairs(stairs: Stairs | Ramp | Escalator) -> dict[str, Any]:
         "tread": stairs.tread,
         "type": stairs.shape,
     }
+    if stairs.handrails != BOTH:
+        feature["properties"]["handrails"] = stairs.handrails
     names = {DOG_LEG: _OF_DOG_LEGS, FLIGHTS: _OF_SEVERAL_FLIGHTS}.get(stairs.shape, ())
     given = {name: getattr(stairs, name) for name in names}
     feature["properties"] |= {name: each for name, each in given.items() if each is not None}
@@ -137,7 +140,7 @@ def _refuge(feature: Given, given: Given, at: str) -> Refuge:
 def _stairs(feature: Given, given: Given, at: str) -> Stairs:
     head, ends = _line(feature, STAIRS, at), _ends(given, at)
     risers, tread = whole(given, "risers", at), _number(given, "tread", at)
-    more = {name: given[name] for name in _OF_DOG_LEGS if name in given}
+    more = {name: given[name] for name in (*_OF_DOG_LEGS, "handrails") if name in given}
     for name in ("flights", "turns"):
         if name in given:
             if not isinstance(given[name], list | tuple):

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 import shapely
 
-from mesa_mobility import PedestrianModel
+from mesa_mobility import Building, Exit, Level, Lift, PedestrianModel, Stairs
 from mesa_mobility.animation import Selection, walkers, write_glb, write_usd
+from mesa_mobility.animation.buildings.storeys import drawn_building
 from mesa_mobility.animation.scenery import surfaces
-from mesa_mobility.animation.storeys import drawn_building
 from mesa_mobility.bodies.feet import LEGS, soles
 from mesa_mobility.bodies.rotations import matrices
 from mesa_mobility.buildings import ON_STAIRS
 from mesa_mobility.results import Trajectories
-from tests.fixtures.buildings import two_storeys, with_refuge_and_lift
+from tests.fixtures.buildings import HALL, RISE, two_storeys, with_refuge_and_lift
 
 OFFICE = two_storeys()
 HEAD, FOOT = 8.0, 12.93
@@ -84,6 +84,93 @@ def test_floors_have_their_elevations_and_the_upper_lets_one_see_through():
     sides = inner + outer - 2 * 4 + 4 * 0.15
     assert area_of(found["walls_level_0"]) == pytest.approx(1.2 * sides, rel=1e-6)
     assert area_of(found["walls_level_1"]) == pytest.approx(1.2 * (inner + outer), rel=1e-6)
+
+
+def corners_of(surface, at):
+    """Corners of a mesh at an x, metres."""
+    return surface.vertices[np.abs(surface.vertices[:, 0] - at) < 1e-4]
+
+
+def test_handrails_are_beside_the_flight_above_the_edges_of_its_treads():
+    head = ((8, 1.4), (8, 0.2))
+    for side, (low, high) in {
+        "both": (0.16, 1.44),
+        "left": (1.4, 1.44),
+        "right": (0.16, 0.2),
+    }.items():
+        stairs = Stairs.straight("s", 1, 0, head, risers=18, tread=0.29, handrails=side)
+        levels = Level(0, HALL, exits=[Exit("west", (0, 3), (0, 5))]), Level(1, HALL, RISE)
+        found = {each.name: each for each in surfaces(Building(levels, [stairs]))}
+        rails = found["handrails_level_0"]
+        assert rails.vertices[:, 1].min() == pytest.approx(low, abs=1e-6)
+        assert rails.vertices[:, 1].max() == pytest.approx(high, abs=1e-6)
+        # The clear width is free.
+        assert not ((rails.vertices[:, 1] > 0.2001) & (rails.vertices[:, 1] < 1.3999)).any()
+        # Of the floor at the head, and of the last tread, 0.17 m above the ground.
+        assert corners_of(rails, HEAD)[:, 2].max() == pytest.approx(3.06 + 0.9)
+        assert corners_of(rails, FOOT)[:, 2].max() == pytest.approx(0.17 + 0.9)
+        assert rails.vertices[:, 2].min() == pytest.approx(0.0)
+        assert len(rails.triangles) <= (2 if side == "both" else 1) * 32
+        # The edge of tread 9 is 2.61 m from the head, at 1.53 m.
+        top = max(rails.vertices.tolist(), key=lambda each: each[2])
+        slope = (0.17 + 0.9 - 3.06 - 0.9) / (FOOT - HEAD)
+        assert top[2] + slope * 9 * 0.29 == pytest.approx(1.53 + 0.9)
+
+
+def test_stairs_without_handrails_have_none():
+    stairs = Stairs.dog_leg(
+        "s", 1, 0, ((14, 8), (14, 6.8)), risers=18, turn="right", handrails="none"
+    )
+    levels = Level(0, HALL, exits=[Exit("west", (0, 3), (0, 5))]), Level(1, HALL, RISE)
+    names = {each.name for each in surfaces(Building(levels, [stairs]))}
+    assert {"flight_0", "landing_0"} < names
+    assert not any(name.startswith("handrails") for name in names)
+
+
+def test_shafts_of_lifts_have_holes_walls_and_doors():
+    """A car of 1.1 m by 1.4 m behind a door of 0.9 m; the shaft is 1.5 m deep."""
+    building = with_refuge_and_lift()
+    found = {surface.name: surface for surface in surfaces(building)}
+    assert area_of(found["floor_level_0"]) == pytest.approx(24 * 8, rel=1e-6)
+    holes = 1.2 * 4.93 + 1.1 * 1.4
+    assert area_of(found["floor_level_1"]) == pytest.approx(24 * 8 - holes, rel=1e-6)
+    lower, upper = found["shafts_level_0"], found["shafts_level_1"]
+    assert (lower.vertices[:, 2].min(), lower.vertices[:, 2].max()) == pytest.approx((0, 3.06))
+    assert upper.vertices[:, 2].min() == pytest.approx(3.06)
+    assert upper.vertices[:, 2].max() == pytest.approx(3.06 + 2.3)
+    around, door = 2 * (1.1 + 1.5), 0.9 * 2.0
+    assert area_of(lower) == pytest.approx(around * 3.06 - door, rel=1e-5)
+    assert area_of(upper) == pytest.approx(around * 2.3 - door, rel=1e-5)
+    assert lower.opacity < 1.0
+    # Posts and bars are 6 cm thick.
+    frame = found["shaft_frames_level_1"]
+    assert frame.vertices[:, 0].min() == pytest.approx(20.45 - 0.55 - 0.03)
+    assert frame.vertices[:, 1].max() == pytest.approx(6.5 + 1.5 + 0.03)
+    assert frame.vertices[:, 2].max() == pytest.approx(3.06 + 2.3)
+    assert len(lower.triangles) + len(frame.triangles) < 200
+    drawn = [each for each in drawn_building(building)["fittings"] if each["opacity"] < 1.0]
+    assert [each["bottom"] for each in drawn] == [0.0, 3.06]
+    assert np.array(drawn[1]["vertices"])[2::3].max() == pytest.approx(5.36)
+
+
+def test_a_level_that_a_lift_passes_has_a_hole_and_no_door():
+    levels = [Level(k, HALL, RISE * k, exits=[Exit(f"west {k}", (0, 3), (0, 5))]) for k in range(3)]
+    building = Building(levels, [], lifts=[Lift("lift", [0, 2], ((20.0, 6.0), (20.9, 6.0)))])
+    found = {surface.name: surface for surface in surfaces(building)}
+    assert area_of(found["floor_level_1"]) == pytest.approx(24 * 8 - 1.1 * 1.4, rel=1e-6)
+    assert area_of(found["shafts_level_1"]) == pytest.approx(2 * (1.1 + 1.5) * 3.06, rel=1e-5)
+
+
+def test_levels_have_no_wall_where_a_lift_leads_off_their_edge():
+    exits = [Exit("west", (0, 3), (0, 5))]
+    levels = [Level(0, HALL, exits=exits), Level(1, HALL, RISE)]
+    building = Building(levels, [], lifts=[Lift("lift", [0, 1], ((20.0, 8.0), (20.9, 8.0)))])
+    walls = np.array(drawn_building(building)["storeys"][1]["walls"])
+    assert np.hypot(*(walls[:, 2:] - walls[:, :2]).T).sum() == pytest.approx(64 - 0.9)
+    [wall] = [each for each in surfaces(building) if each.name == "walls_level_1"]
+    # Two jambs of 0.15 m in place of an inner and an outer side of 0.9 m.
+    sides = 64 + 64 + 8 * 0.15 - 2 * 0.9 + 2 * 0.15
+    assert area_of(wall) == pytest.approx(1.2 * sides, rel=1e-5)
 
 
 def test_closed_exits_are_walls():

@@ -96,6 +96,19 @@ def test_stairs_of_any_measures_are_read_again(risers, tread, well, landing, tur
     assert parts(Building.from_geojson(json.loads(text))) == parts(building)
 
 
+@pytest.mark.parametrize("handrails", ["both", "left", "right", "none"])
+def test_handrails_are_read_again_and_both_are_left_out(handrails):
+    ground = Level(0, HALL, exits=[Exit("street", (0, 3), (0, 5))])
+    upper = Level(1, HALL, 3.06)
+    head = ((8, 1.2), (8, 0))
+    stairs = Stairs.straight("s", upper, ground, head, risers=18, handrails=handrails)
+    building = Building([ground, upper], [stairs])
+    written = building.to_geojson()["features"][-1]["properties"]
+    assert written.get("handrails", "both") == handrails
+    assert ("handrails" in written) == (handrails != "both")
+    assert Building.from_geojson(building.to_geojson()).stairs == (stairs,)
+
+
 def test_features_have_the_number_of_their_level():
     features = two_storeys().to_geojson()["features"]
     kinds = [(each["properties"]["kind"], each["properties"]["level"]) for each in features]
@@ -144,6 +157,8 @@ def test_closed_exits_stay_closed():
         (4, "tread", None, "GeoJSON: feature 4: tread must be a number, found None"),
         (4, "type", "spiral", "GeoJSON: feature 4: stairs 'south': expected one of the shapes"),
         (4, "to", 7, "GeoJSON: stairs 'south': there is no level 7"),
+        (4, "handrails", "up", "feature 4: stairs 'south': expected handrails both, left, right"),
+        (4, "handrails", ["left"], "feature 4: stairs 'south': expected handrails both"),
         (5, "turn", 3, "GeoJSON: feature 5: stairs 'north': expected a turn"),
         (1, "level", "zero", "GeoJSON: feature 1: level must be a whole number, found 'zero'"),
         (1, "level", 5, "GeoJSON: level 5: expected one walkable area, found 0"),

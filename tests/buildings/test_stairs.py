@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from shapely import box
 
 from mesa_mobility import Level, Stairs
-from mesa_mobility.buildings.connections.stairs import speed_factor
+from mesa_mobility.buildings.connections.flights import speed_factor
 from mesa_mobility.errors import FloorPlanError
 
 
@@ -173,6 +173,7 @@ def test_speeds_are_those_of_the_sfpe_handbook(riser, tread, along_slope):
         (lambda: dog_leg(turn="up"), "turn to the 'left' or 'right', found 'up'"),
         (lambda: dog_leg(well=0.0), "between its flights, found 0.0"),
         (lambda: dog_leg(landing=0.1), "a landing 0.6 to 10 m deep, found 0.1"),
+        (lambda: straight(handrails="up"), "handrails both, left, right, none, found 'up'"),
         (lambda: Stairs("s", 1, 0, ((0, 0), (1, 0)), 18, shape="spiral"), "found 'spiral'"),
         (lambda: straight().parts(6.0, 0.0), "18 risers for a rise of 6 m are 0.333 m each"),
         (lambda: straight().parts(0.0, 3.0), "0.10 to 0.22 m"),
@@ -185,6 +186,15 @@ def test_what_is_wrong_is_said_in_one_line(make, said):
     with pytest.raises(FloorPlanError, match=said) as error:
         make()
     assert "\n" not in str(error.value)
+
+
+def test_handrails_are_those_of_every_flight_and_narrow_none():
+    for make in (straight, dog_leg, lambda **more: of_flights(["left", "on"], **more)):
+        both, left = make().parts(3.06, 0.0)[0], make(handrails="left").parts(3.06, 0.0)[0]
+        assert {each.handrails for each in both} == {"both"}
+        assert {each.handrails for each in left} == {"left"}
+        assert [each.width for each in left] == pytest.approx([1.2] * len(left))
+        assert [(each.head, each.going) for each in left] == [(e.head, e.going) for e in both]
 
 
 def test_the_highest_riser_is_accepted_however_its_height_is_rounded():

@@ -1,4 +1,4 @@
-// Floors, walls, openings and stairs of a plan or of a building, as meshes.
+// Floors, walls, openings, stairs and lifts of a plan or of a building, as meshes.
 "use strict";
 
 const WALL_HEIGHT = 1.2, STRIPE = 0.12, OVER_FLOOR = 0.01; // metres; half the width of an opening's stripe
@@ -15,7 +15,7 @@ const LAYER_VERTEX = `
     gl_Position = projectionMatrix * (viewMatrix * vec4(position, 1.0));
   }`;
 const LAYER_FRAGMENT = "uniform sampler2D cells; in vec2 spot; out vec4 painted; void main() { painted = texture(cells, spot); }";
-const STEPS = "#c9b79c", REFUGE = "#7fc9a0", OPENINGS = { exit: "#00795a", door: "#0072b2", closed: "#b23c00" };
+const REFUGE = "#7fc9a0", OPENINGS = { exit: "#00795a", door: "#0072b2", closed: "#b23c00" };
 const channels = (colour) => (colour[0] === "#" ? [1, 3, 5].map((k) => parseInt(colour.slice(k, k + 2), 16))
   : colour.match(/\d+/g).map(Number)).map((each) => each / 255);
 
@@ -49,8 +49,8 @@ class Scenery {
     // Each wall with the elevation of its lower edge.
     this.walls = storeys.flatMap(({ walls, elevation }) => walls.map((wall) => [...wall, elevation]));
     storeys.forEach((storey, k) => this.storey(storey, colours, k > 0));
-    for (const { bottom, vertices, normals, triangles: index } of floor.stairs || []) {
-      this.put(triangles(vertices, index, { normal: [normals, 3] }), shaded(STEPS), bottom);
+    for (const { bottom, colour, opacity, vertices, normals, triangles: index } of floor.fittings || []) {
+      this.put(triangles(vertices, index, { normal: [normals, 3] }), shaded(colour, { opacity }), bottom);
     }
     this.cut(this.below);
   }
@@ -73,7 +73,7 @@ class Scenery {
     for (const [kind, [side, top]] of Object.entries(SOLIDS)) {
       const own = solids.filter((each) => each.kind === kind);
       if (!own.length) continue;
-      this.put(sideGeometry(own, elevation), this.see(shaded(side, kind === "wall"), kind), elevation);
+      this.put(sideGeometry(own, elevation), this.see(shaded(side, { through: kind === "wall" }), kind), elevation);
       for (const height of new Set(own.map((each) => each.top))) {
         const level = own.filter((each) => each.top === height).map(({ rings }) => shape(rings));
         this.put(new THREE.ShapeGeometry(level).translate(0, 0, elevation + height), flat(top), elevation);
@@ -167,9 +167,10 @@ function flat(colour, opacity = 1) {
 }
 
 // Seats are seen from outside only.
-function shaded(colour, through = true) {
+function shaded(colour, { through = true, opacity = 1 } = {}) {
   return new THREE.ShaderMaterial({ vertexShader: WALL_VERTEX, fragmentShader: WALL_FRAGMENT, glslVersion: THREE.GLSL3,
-    ...(through && { side: THREE.DoubleSide }), uniforms: { colour: { value: channels(colour) }, opacity: { value: 1 } } });
+    ...(through && { side: THREE.DoubleSide }), transparent: opacity < 1, depthWrite: opacity === 1,
+    uniforms: { colour: { value: channels(colour) }, opacity: { value: opacity } } });
 }
 
 function triangles(corners, index, more = {}) {

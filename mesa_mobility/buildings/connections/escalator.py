@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from typing import Self
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.buildings.connections.flights import Flight, Landing
+from mesa_mobility.buildings.connections.flights import Flight, Landing, speed_factor
 from mesa_mobility.buildings.connections.lines import Line, line_of, width_of
-from mesa_mobility.buildings.connections.stairs import speed_factor
 from mesa_mobility.buildings.level import Level, number_of, sheet_of
 from mesa_mobility.errors import FloorPlanError
 

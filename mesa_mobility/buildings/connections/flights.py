@@ -1,5 +1,6 @@
 """Flights, which lead from one level or landing down to another, and landings."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,34 @@ from mesa_mobility.buildings.connections.lines import Line, moved, right_angle, 
 UPWARDS = 0.8
 """Speed up stairs as a share of that down: 0.8 and 1.0 m/s in IMO MSC.1/Circ.1533. The speeds of
 Fruin (1971) give 0.71 to 0.77, by age."""
+
+_FLAT = 1.40
+"""Speed on a level floor without others, m/s: SFPE Handbook, chapter on employing the hydraulic
+model."""
+
+_ON_STAIRS = 0.861
+"""Speed along the slope of stairs without others, m/s, where treads are as deep as risers are high;
+it grows with the root of their ratio. The same: 1.00, 1.08, 1.16 and 1.23 m/s on stairs of 7.5/10,
+7/11, 6.5/12 and 6.5/13 inches."""
+
+BOTH, NONE = "both", "none"
+
+HANDRAILS = BOTH, "left", "right", NONE
+"""Sides of a flight that have a handrail, as seen by somebody who walks down."""
+
+
+def speed_factor(riser: float, tread: float) -> float:
+    """The share of their speed on a level floor at which people cover ground down stairs.
+
+    It is for ground as a plan shows it. The SFPE Handbook does not tell down from up; see
+    ``Flight.uphill``.
+
+    Args:
+        riser: height of a riser, metres.
+        tread: depth of a tread, metres.
+    """
+    along_slope = min(_ON_STAIRS * math.sqrt(tread / riser) / _FLAT, 1.0)
+    return along_slope * tread / math.hypot(tread, riser)
 
 
 @dataclass(frozen=True)
@@ -31,6 +60,7 @@ class Flight:
         moves: m/s in plan at which its treads carry people down, below 0 up; 0 for all but
             escalators.
         gap_s: least mean time in seconds from one person who steps on an escalator to the next.
+        handrails: the sides that have a handrail beside the clear width, one of `HANDRAILS`.
     """
 
     name: str
@@ -45,6 +75,7 @@ class Flight:
     tread: float = 0.0
     moves: float = 0.0
     gap_s: float = 0.0
+    handrails: str = NONE
 
     @property
     def width(self) -> float:

@@ -1,6 +1,5 @@
 """Stairs between two levels."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
@@ -9,7 +8,13 @@ import numpy as np
 from shapely import Polygon
 
 from mesa_mobility._numbers import is_number
-from mesa_mobility.buildings.connections.flights import Flight, Landing
+from mesa_mobility.buildings.connections.flights import (
+    BOTH,
+    HANDRAILS,
+    Flight,
+    Landing,
+    speed_factor,
+)
 from mesa_mobility.buildings.connections.lines import Line, line_of, pair, width_of
 from mesa_mobility.buildings.level import Level, number_of, sheet_of
 from mesa_mobility.errors import FloorPlanError
@@ -39,36 +44,18 @@ RISERS = 0.10, 0.22
 TREADS = 0.20, 0.60
 """Least and greatest depth of a tread, metres."""
 
-_FLAT = 1.40
-"""Speed on a level floor without others, m/s: SFPE Handbook, chapter on employing the hydraulic
-model."""
-
-_ON_STAIRS = 0.861
-"""Speed along the slope of stairs without others, m/s, where treads are as deep as risers are high;
-it grows with the root of their ratio. The same: 1.00, 1.08, 1.16 and 1.23 m/s on stairs of 7.5/10,
-7/11, 6.5/12 and 6.5/13 inches."""
-
 _ROUNDING = 1e-9
 """Metres."""
-
-
-def speed_factor(riser: float, tread: float) -> float:
-    """The share of their speed on a level floor at which people cover ground down stairs.
-
-    It is for ground as a plan shows it. The SFPE Handbook does not tell down from up; see
-    ``Flight.uphill``.
-
-    Args:
-        riser: height of a riser, metres.
-        tread: depth of a tread, metres.
-    """
-    along_slope = min(_ON_STAIRS * math.sqrt(tread / riser) / _FLAT, 1.0)
-    return along_slope * tread / math.hypot(tread, riser)
 
 
 @dataclass(frozen=True)
 class Stairs:
     """Stairs from one level down to another; `straight`, `dog_leg` and `of_flights` make them.
+
+    The width of a flight is the clear width between its handrails, where building rules measure it.
+    Handrails stand beside it and take nothing of it. They are drawn in three dimensions. People do
+    not hold them. The effective width of the SFPE Handbook, 0.15 m less at each side, is not taken
+    off.
 
     Args:
         name: unique among the stairs, ramps, escalators, lifts, gates and exits of the building.
@@ -86,9 +73,11 @@ class Stairs:
             width.
         flights: risers of each flight of the shape "flights", from the top.
         turns: "on", "left" or "right": the way on from each of its landings, from the top.
+        handrails: the sides of each flight that have a handrail, as seen by somebody who walks
+            down: "both", "left", "right" or "none".
 
     Raises:
-        FloorPlanError: numbers out of range, or another shape or turn.
+        FloorPlanError: numbers out of range, or another shape, turn or side of handrails.
     """
 
     name: str
@@ -103,6 +92,7 @@ class Stairs:
     landing: float | None = None
     flights: tuple[int, ...] = ()
     turns: tuple[str, ...] = ()
+    handrails: str = BOTH
 
     @classmethod
     def straight(
@@ -114,6 +104,7 @@ class Stairs:
         *,
         risers: int,
         tread: float = 0.29,
+        handrails: str = BOTH,
     ) -> Self:
         """Stairs of one straight flight; see the class for the arguments."""
         return cls(
@@ -123,6 +114,7 @@ class Stairs:
             line_of("stairs", name, "head", head),
             risers,
             tread,
+            handrails=handrails,
         )
 
     @classmethod
@@ -138,6 +130,7 @@ class Stairs:
         turn: str = "left",
         well: float = 0.2,
         landing: float | None = None,
+        handrails: str = BOTH,
     ) -> Self:
         """Stairs of two flights side by side, which lead in opposite directions, and a landing.
 
@@ -154,6 +147,7 @@ class Stairs:
             turn,
             well,
             landing,
+            handrails=handrails,
         )
 
     @classmethod
@@ -168,6 +162,7 @@ class Stairs:
         turns: Sequence[str],
         tread: float = 0.29,
         landing: float | None = None,
+        handrails: str = BOTH,
     ) -> Self:
         """Stairs of several flights with landings between: straight on, quarter turns, or both.
 
@@ -192,6 +187,7 @@ class Stairs:
             landing=landing,
             flights=flights,
             turns=tuple(turns),
+            handrails=handrails,
         )
 
     kind = "stairs"
@@ -220,6 +216,8 @@ class Stairs:
         deep = self.landing
         if deep is not None and not (is_number(deep) and LEAST_WIDTH <= deep <= 10.0):
             self._refuse(f"a landing {LEAST_WIDTH} to 10 m deep", deep)
+        if self.handrails not in HANDRAILS:
+            self._refuse(f"handrails {', '.join(HANDRAILS)}", self.handrails)
 
     def _check_flights(self) -> None:
         """Raise FloorPlanError unless flights and turns are those of the shape."""
@@ -274,9 +272,20 @@ class Stairs:
             if left > 1:
                 number = f" {left - 1}" if len(counts) > 2 else ""
                 beyond = f"landing{number} of {self.name}"
-            going = (count - 1) * self.tread
             flights.append(
-                Flight(name, head, going, above, below, sheet, beyond, factor, count, self.tread)
+                Flight(
+                    name=name,
+                    head=head,
+                    going=(count - 1) * self.tread,
+                    top=above,
+                    bottom=below,
+                    upper=sheet,
+                    lower=beyond,
+                    factor=factor,
+                    risers=count,
+                    tread=self.tread,
+                    handrails=self.handrails,
+                )
             )
             if left > 1:
                 head, area = self._landing_behind(flights[-1], turns[k])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mesa_mobility import PedestrianModel
-from mesa_mobility.animation.storeys import drawn_building
+from mesa_mobility.animation.buildings.storeys import drawn_building
 from mesa_mobility.dashboard.session import serialization
 from mesa_mobility.floorplan.occupants import check_vacant
 

@@ -8,8 +8,7 @@ from typing import Any
 from shapely import Polygon, box
 
 from mesa_mobility import Building, Exit, Level, Stairs
-from mesa_mobility.buildings.connections.flights import UPWARDS
-from mesa_mobility.buildings.connections.stairs import speed_factor
+from mesa_mobility.buildings.connections.flights import UPWARDS, speed_factor
 from mesa_mobility.verification.runs import (
     CLEARANCE,
     SPACING,

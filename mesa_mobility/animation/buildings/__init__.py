@@ -1,0 +1,1 @@
+"""Buildings as three-dimensional views show them: storeys, flights and shafts of lifts."""
