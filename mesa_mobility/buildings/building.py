@@ -156,17 +156,17 @@ class Building:
         """The building as a GeoJSON FeatureCollection, in its own coordinates, metres.
 
         Features are those of a floor plan, each with the number of its `level`; walkable areas have
-        an `elevation`. A feature of the kind `stairs` is their upper edge, the end on the left of
-        a person who walks down first. It has `from` and `to`, the numbers of the upper and the
-        lower level, `risers`, `tread` and `type`: straight, dog_leg or flights. A dog-leg also has
-        `turn` and `well`, stairs of several flights have `flights` and `turns`, and both have
-        `landing` if it was given. Stairs without handrails on both sides have `handrails`. A
-        feature of the kind `ramp` is its upper edge, with `from`, `to`, `length` and `factor`. One of the kind `escalator` has the other arguments of
-        `Escalator` in place of `factor`. A feature of the kind `lift` is the door, with the numbers
-        of its `levels` and the other arguments of `Lift`. One of the kind `refuge` is an area.
-        Stairs, ramps, escalators and lifts have a list `closed` of the names of their gates that
-        are closed. A building of level 0 alone, at elevation 0 and without refuges, is written as
-        its floor plan.
+        an `elevation`. A feature of the kind `stairs` is their upper edge, the end on the left of a
+        person who walks down first. It has `from` and `to`, the numbers of the upper and the lower
+        level, `risers`, `tread` and `type`: straight, dog_leg or flights. A dog-leg also has `turn`
+        and `well`, stairs of several flights have `flights` and `turns`, and both have `landing` if
+        it was given. Stairs without handrails on both sides have `handrails`. A feature of the kind
+        `ramp` is its upper edge, with `from`, `to`, `length` and `factor`. One of the kind
+        `escalator` has the other arguments of `Escalator` in place of `factor`. A feature of the
+        kind `lift` is the door, with the numbers of its `levels` and the other arguments of `Lift`.
+        One of the kind `refuge` is an area. Stairs, ramps, escalators and lifts have a list
+        `closed` of the names of their gates that are closed. A building of level 0 alone, at
+        elevation 0 and without refuges, is written as its floor plan.
         """
         first, plan = self.levels[0], self.floor_plan
         plain = first.number == 0 and first.elevation == 0.0 and not first.refuges
