@@ -162,11 +162,11 @@ class Building:
         and `well`, stairs of several flights have `flights` and `turns`, and both have `landing` if
         it was given. Stairs without handrails on both sides have `handrails`. A feature of the kind
         `ramp` is its upper edge, with `from`, `to`, `length` and `factor`. One of the kind
-        `escalator` has the other arguments of `Escalator` in place of `factor`. A feature of the
-        kind `lift` is the door, with the numbers of its `levels` and the other arguments of `Lift`.
-        One of the kind `refuge` is an area. Stairs, ramps, escalators and lifts have a list
-        `closed` of the names of their gates that are closed. A building of level 0 alone, at
-        elevation 0 and without refuges, is written as its floor plan.
+        `escalator` has no `factor`, but the other arguments of `Escalator`. A feature of the kind
+        `lift` is the door, with the numbers of its `levels` and the other arguments of `Lift`. One
+        of the kind `refuge` is an area. Stairs, ramps, escalators and lifts have a list `closed` of
+        the names of their gates that are closed. A building of level 0 alone, at elevation 0 and
+        without refuges, is written as its floor plan.
         """
         first, plan = self.levels[0], self.floor_plan
         plain = first.number == 0 and first.elevation == 0.0 and not first.refuges

@@ -168,7 +168,7 @@ def test_levels_have_no_wall_where_a_lift_leads_off_their_edge():
     walls = np.array(drawn_building(building)["storeys"][1]["walls"])
     assert np.hypot(*(walls[:, 2:] - walls[:, :2]).T).sum() == pytest.approx(64 - 0.9)
     [wall] = [each for each in surfaces(building) if each.name == "walls_level_1"]
-    # Two jambs of 0.15 m in place of an inner and an outer side of 0.9 m.
+    # An inner and an outer side of 0.9 m are left out, and two jambs of 0.15 m are there.
     sides = 64 + 64 + 8 * 0.15 - 2 * 0.9 + 2 * 0.15
     assert area_of(wall) == pytest.approx(1.2 * sides, rel=1e-5)
 
