@@ -11,7 +11,12 @@ from numpy.typing import NDArray
 from mesa_mobility.verification import charts
 from mesa_mobility.verification.cases import Figures
 from mesa_mobility.verification.judging import LEAST_ENTRIES, single_file_bins
-from mesa_mobility.verification.references import corridor_band, published
+from mesa_mobility.verification.references import (
+    STAIR_DENSITIES,
+    corridor_band,
+    published,
+    stair_band,
+)
 from mesa_mobility.verification.scenarios.tracks.track import binned
 
 Runs = Sequence[Sequence[Figures]]
@@ -24,6 +29,8 @@ _FOUND = charts.Look(charts.OURS.colour, "simulated: middle 80 % and median", ch
 _RANGE = charts.Look(
     charts.MEASURED.colour, "measured in single file: range and mean", charts.MEASURED.marker
 )
+
+_STAIRS = "measured on stairs: slow to fast (Corbetta)"
 
 
 def corridor_diagram(runs: Runs) -> Figure:
@@ -46,6 +53,19 @@ def corridor_diagram(runs: Runs) -> Figure:
     for panel in (speed, flow):
         panel.set_xlabel("density (persons/m²)")
     charts.finish((speed, flow))
+    return figure
+
+
+def stair_diagram(runs: Runs) -> Figure:
+    """Speed in plan against density on a stair, down and up, with the measured band."""
+    figure, panels = charts.panels(2)
+    for axes, up, title in zip(panels, (False, True), ("down", "up"), strict=True):
+        bins = binned([row[int(up)] for row in runs], LEAST_ENTRIES)
+        at = np.linspace(*STAIR_DENSITIES, 60)
+        axes.fill_between(at, *stair_band(at, up=up), color=_BAND.colour, alpha=0.2, label=_STAIRS)
+        charts.band(axes, bins["density"], bins["p10"], bins["p50"], bins["p90"], _FOUND)
+        axes.set(title=title, xlabel="density (persons/m²)", ylabel="speed in plan (m/s)")
+    charts.finish(panels)
     return figure
 
 
@@ -91,6 +111,7 @@ def filled_corridor_diagram(runs: Runs) -> Figure:
 
 DIAGRAMS = {
     "corridor": corridor_diagram,
+    "stairs": stair_diagram,
     "single file": single_file_of,
     "filled corridor": filled_corridor_diagram,
 }

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from scipy import stats
 
-from mesa_mobility.verification import judging, rimea
+from mesa_mobility.verification import judging, rimea, storeys
 from mesa_mobility.verification.cases import Figures, case
 from mesa_mobility.verification.checks import Verdict, at_most, less_than, within
 from mesa_mobility.verification.references import bottleneck_envelope
@@ -59,8 +59,8 @@ TESTS = {
         (case(walks.lone_walker, length=40.0, speed=1.0, measured_from=10.0, measured_to=30.0),),
         judge=judging.lone_walk((37.7, 43.5), 1.0),
     ),
-    "imo-02": VerificationTest((rimea.climb(1.0, up=True),), judge=judging.climbs((1.0,))),
-    "imo-03": VerificationTest((rimea.climb(1.0, up=False),), judge=judging.climbs((1.0,))),
+    "imo-02": VerificationTest((storeys.climb(1.0, up=True),), judge=judging.climbs((1.0,))),
+    "imo-03": VerificationTest((storeys.climb(1.0, up=False),), judge=judging.climbs((1.0,))),
     "imo-04": VerificationTest((ROOM_OF_100,), judge=exit_flow),
     "imo-05": rimea.TESTS["rimea-05"],
     "imo-06": VerificationTest((CORNER,), judge=judging.corner(60.0)),
@@ -71,6 +71,6 @@ TESTS = {
     "imo-08": VerificationTest(COUNTERFLOW, judge=judging.counterflow),
     "imo-09": rimea.TESTS["rimea-09"],
     "imo-10": rimea.TESTS["rimea-10"],
-    "imo-11": VerificationTest((rimea.FOOT_OF_STAIR,), judge=rimea.jam_at_the_foot),
+    "imo-11": VerificationTest((storeys.FOOT_OF_STAIR,), judge=storeys.jam_at_the_foot),
     "imo-12": VerificationTest(rimea.TRACKS, judge=flow_at_high_density, chart="corridor"),
 }

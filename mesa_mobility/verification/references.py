@@ -17,6 +17,16 @@ BOTTLENECK_FIT = (2.233, -0.155)
 BOTTLENECK_TOLERANCE = 0.7
 """Two standard deviations of single runs about the fit, 1/s."""
 
+STAIR_SPEEDS = {
+    False: ((0.33, -1.02, 1.39), (-0.11, 0.29), (-0.08, 0.67), (-0.06, 0.14)),
+    True: ((0.18, -0.55, 1.02), (-0.14, 0.35), (0.01, 0.48), (-0.02, 0.10)),
+}
+"""Down and up: fast speed on stairs, its standard deviation, slow speed and its standard deviation,
+m/s, each a polynomial of the density (Corbetta, read from a program that uses it)."""
+
+STAIR_DENSITIES = (0.6, 1.5)
+"""Persons/m2 between which that program compares speeds."""
+
 
 def table(name: str) -> list[dict[str, str]]:
     """Rows of a reference table, as text by column."""
@@ -46,6 +56,17 @@ def corridor_band(density: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArra
         np.interp(wanted, at, bins[f"v_along_1p5s_{p}"]) for p in ("p10", "p50", "p90")
     )
     return low, middle, high
+
+
+def stair_band(density: ArrayLike, *, up: bool) -> tuple[FloatArray, FloatArray]:
+    """Least and greatest speed on stairs, m/s, at densities of 0.6 to 1.5 persons/m2 (Corbetta).
+
+    They are the slow speed less its standard deviation, and the fast speed and its standard
+    deviation. Above 1.5 persons/m2 the fast speed rises again.
+    """
+    at = np.asarray(density, dtype=np.float64)
+    fast, fast_sd, slow, slow_sd = (np.polyval(each, at) for each in STAIR_SPEEDS[up])
+    return slow - slow_sd, fast + fast_sd
 
 
 def bottleneck_fit(width: float) -> float:

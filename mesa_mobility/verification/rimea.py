@@ -1,9 +1,8 @@
-"""RiMEA 3.0 and 4.1.1: the tests of level floors and stairs."""
+"""RiMEA 3.0 and 4.1.1: the tests of level floors."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from scipy import stats
@@ -11,7 +10,7 @@ from scipy import stats
 from mesa_mobility.distributions import Uniform
 from mesa_mobility.populations import OFF_CURVE, WITHIN
 from mesa_mobility.verification import judging
-from mesa_mobility.verification.cases import Case, Figures, case
+from mesa_mobility.verification.cases import Figures, case
 from mesa_mobility.verification.checks import (
     Check,
     Verdict,
@@ -33,7 +32,6 @@ from mesa_mobility.verification.scenarios import (
     rooms,
     walks,
 )
-from mesa_mobility.verification.scenarios.buildings import stairs
 from mesa_mobility.verification.scenarios.tracks.single_file import CASES as SINGLE_FILE
 from mesa_mobility.verification.scenarios.tracks.track import DENSITY_BIN, binned, track
 from mesa_mobility.verification.suite import VerificationTest
@@ -52,46 +50,10 @@ TRACKS = tuple(
     for density in DENSITIES
 )
 LEAST_ENTRIES = 50
-STAIR: dict[str, Any] = {"risers": 28, "riser": 6.0 / 28.0, "tread": 8.0 / 27.0}
-"""10 m along the slope."""
-CLIMBS = (0.5, 0.7, 1.0)
-"""Speeds on it, m/s."""
-FOOT_OF_STAIR = case(stairs.up_from_a_corridor, effort=4.0, riser=0.2, tread=0.25)
 GOALS = (0.0, 2.0, 5.0, 10.0)
 WIDTHS = (0.8, 1.0, 1.2)
 LONG_NECK = case(necks.neck, effort=3.0, width=1.0, length=5.0, goal=10.0)
 SHORT_NECK = case(necks.neck, effort=3.0, width=1.0, length=0.2, goal=10.0)
-
-
-def climb(speed: float, *, up: bool) -> Case:
-    """A case of one person on ``STAIR``, at this speed along the slope, m/s."""
-    preferred = stairs.preferred_for(speed, up=up, **STAIR)
-    return case(stairs.lone_climber, up=up, preferred=preferred, **STAIR)
-
-
-def jam_at_the_foot(runs: Sequence[Figures]) -> Verdict:
-    """The exit of the room jams, and a jam grows at the foot of the stair.
-
-    A jam that begins at the foot grows along the corridor, and ends at the foot. So people spend
-    more time at the foot than in the corridor, though the jam is as dense there once it has grown.
-    """
-    (run,) = runs
-    door, foot = (
-        None if name not in run else run[name] - run[other]
-        for name, other in (("door_early", "middle_early"), ("foot_s", "middle_s"))
-    )
-    growth = run["foot_late"] - run["foot_early"] if "foot_late" in run else None
-    excess = run["flow_in"] - run["flow_up"] if "flow_in" in run else None
-    return Verdict(
-        (
-            *judging.everybody_out(runs),
-            more_than("density at the exit less that in the corridor, early 1/m2", door, 0.0),
-            more_than("time at the foot less that in the corridor s", foot, 0.0),
-            more_than("growth of the density at the foot 1/m2", growth, 0.0),
-            more_than("flow into the corridor less that up the stair 1/s", excess, 0.0),
-        ),
-        {name: run[name] for name in ("flow_in", "flow_up") if name in run},
-    )
 
 
 def fundamental_diagram(runs: Sequence[Figures]) -> Verdict:
@@ -289,12 +251,6 @@ TESTS = {
         (case(walks.lone_walker, length=40.0, speed=1.33, measured_from=10.0, measured_to=30.0),),
         judge=judging.lone_walk((26.0, 34.0), 1.33),
     ),
-    "rimea-02": VerificationTest(
-        tuple(climb(speed, up=True) for speed in CLIMBS), judge=judging.climbs(CLIMBS)
-    ),
-    "rimea-03": VerificationTest(
-        tuple(climb(speed, up=False) for speed in CLIMBS), judge=judging.climbs(CLIMBS)
-    ),
     "rimea-04": VerificationTest(TRACKS, judge=fundamental_diagram, chart="corridor"),
     "rimea-05": VerificationTest(
         (case(premovement.late_starters, people=10, times=Uniform(10.0, 100.0)),),
@@ -329,7 +285,6 @@ TESTS = {
         tuple(case(necks.neck, effort=3.0, width=w, length=5.0, goal=10.0) for w in WIDTHS),
         judge=wider_neck,
     ),
-    "rimea-13": VerificationTest((FOOT_OF_STAIR,), judge=jam_at_the_foot),
     "rimea-15": VerificationTest(
         tuple(case(halls.wide_way, effort=5.0, way=way) for way in halls.WAYS), judge=three_ways
     ),

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from mesa_mobility.verification import imo, iso, judging, nist, rimea
+from mesa_mobility.verification import imo, iso, judging, nist, rimea, storeys
+from mesa_mobility.verification.references import stair_band
 from tests.fixtures.verdicts import out, unmet
 
 
@@ -215,13 +216,54 @@ def foot(**changed: float) -> dict:
         ({"flow_up": 3.5}, ["flow into the corridor less that up the stair 1/s"]),
     ],
 )
-@pytest.mark.parametrize("test", [rimea.TESTS["rimea-13"], imo.TESTS["imo-11"]])
+@pytest.mark.parametrize("test", [storeys.TESTS["rimea-13"], imo.TESTS["imo-11"]])
 def test_a_jam_grows_at_the_foot_of_a_stair(changed, wrong, test):
     assert unmet(test.judge([foot(**changed)])) == wrong
 
 
 def test_a_stair_that_not_all_have_climbed_has_no_jam_to_judge():
-    assert len(unmet(rimea.TESTS["rimea-13"].judge([{"left_inside": 3}]))) == 5
+    assert len(unmet(storeys.TESTS["rimea-13"].judge([{"left_inside": 3}]))) == 5
+
+
+def test_measured_speeds_on_stairs_at_one_person_per_m2():
+    # Slow and fast, with their standard deviations: .59, .08, .70, .18 down; .49, .08, .65, .21 up.
+    assert stair_band(1.0, up=False) == pytest.approx((0.51, 0.88))
+    assert stair_band(1.0, up=True) == pytest.approx((0.41, 0.86))
+
+
+def on_a_stair(mean: float, step: float, densities: int = 10) -> dict:
+    """60 speeds at each density from 0.6 persons/m2 on, half a step above and below the mean."""
+    density = np.repeat(0.6 + 0.1 * np.arange(densities), 60)
+    return out(density=density, along=mean + step * np.tile((-0.5, 0.5), len(density) // 2))
+
+
+@pytest.mark.parametrize(
+    ("down", "up", "wrong"),
+    [
+        (on_a_stair(0.7, 0.1), on_a_stair(0.6, 0.1), []),
+        # Half of the speeds, 0.6 m/s, are within the band: as many as are asked for.
+        (on_a_stair(0.85, 0.5), on_a_stair(0.6, 0.1), []),
+        (on_a_stair(1.2, 0.1), on_a_stair(0.6, 0.1), ["share of the speeds down within the band"]),
+        (on_a_stair(0.7, 0.1), on_a_stair(0.3, 0.1), ["share of the speeds up within the band"]),
+        (on_a_stair(0.6, 0.1), on_a_stair(0.6, 0.1), ["least speed down less that up m/s"]),
+        (on_a_stair(0.7, 0.1, 8), on_a_stair(0.6, 0.1), ["speeds down"]),
+    ],
+)
+def test_people_walk_on_stairs_as_fast_as_measured_and_down_faster(down, up, wrong):
+    assert unmet(storeys.TESTS["rimea-13-speeds"].judge([down, up])) == wrong
+
+
+def test_speeds_beyond_the_measured_densities_do_not_count():
+    crowd = on_a_stair(0.7, 0.1)
+    crowd["density"] = crowd["density"] + 1.0
+    assert unmet(storeys.TESTS["rimea-13-speeds"].judge([crowd, crowd])) == [
+        "speeds down",
+        "share of the speeds down within the band",
+        "speeds up",
+        "share of the speeds up within the band",
+        "densities that both have",
+        "least speed down less that up m/s",
+    ]
 
 
 def test_the_flow_on_a_stair_rises_with_its_width():

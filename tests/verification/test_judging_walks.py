@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from mesa_mobility.verification import imo, iso, judging, nist, rimea
+from mesa_mobility.verification import imo, iso, judging, nist, rimea, storeys
 from tests.fixtures.verdicts import out, unmet
 
 
@@ -61,7 +61,7 @@ def climbed(speed: float | None, left: int = 0) -> dict:
 )
 @pytest.mark.parametrize("name", ["rimea-02", "rimea-03"])
 def test_climbs(speeds, wrong, name):
-    assert unmet(rimea.TESTS[name].judge([climbed(speed) for speed in speeds])) == wrong
+    assert unmet(storeys.TESTS[name].judge([climbed(speed) for speed in speeds])) == wrong
 
 
 def test_somebody_who_is_still_on_the_stair_fails():

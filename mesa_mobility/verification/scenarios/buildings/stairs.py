@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 from shapely import Polygon, box
 
-from mesa_mobility import Building, Exit, Level, Stairs
+from mesa_mobility import Building, Exit, Level, PedestrianType, Stairs
 from mesa_mobility.buildings.connections.flights import UPWARDS, speed_factor
+from mesa_mobility.results import speeds_along
 from mesa_mobility.verification.runs import (
     CLEARANCE,
     SPACING,
@@ -28,6 +30,9 @@ WIDTH = 2.0
 ROOM = box(0.0, 0.0, 10.0, 8.0)
 """The room of ISO test 12."""
 
+AGE_GROUPS = np.repeat((1.34, 1.30, 1.24, 1.20, 1.14, 1.10, 0.96), (15, 15, 15, 15, 15, 15, 10))
+"""Speeds that the people of RiMEA test 13 prefer on a level floor, m/s."""
+
 CORRIDOR = Polygon([(0, 0), (5, 0), (5, 3), (17, 3), (17, 5), (5, 5), (5, 8), (0, 8)])
 FILLED = box(0.0, 0.0, 5.0, 8.0)
 DOOR, MIDDLE, FOOT = box(3.0, 3.0, 5.0, 5.0), box(9.0, 3.0, 11.0, 5.0), box(15.0, 3.0, 17.0, 5.0)
@@ -35,7 +40,14 @@ DOOR, MIDDLE, FOOT = box(3.0, 3.0, 5.0, 5.0), box(9.0, 3.0, 11.0, 5.0), box(15.0
 
 
 def lone_climber(
-    seed: int, *, up: bool, risers: int, riser: float, tread: float, preferred: float
+    seed: int,
+    *,
+    up: bool,
+    risers: int,
+    riser: float,
+    tread: float,
+    preferred: float,
+    kind: str | None = None,
 ) -> dict[str, Any]:
     """One person walks up or down a straight stair 2 m wide.
 
@@ -46,6 +58,7 @@ def lone_climber(
         riser: height of each, metres.
         tread: depth of a tread, metres.
         preferred: speed that they prefer on a level floor, m/s.
+        kind: their type; by default that of the map that ships.
 
     Returns:
         The common figures; ``passing_s``, the seconds from one edge of the stair to the other;
@@ -62,7 +75,8 @@ def lone_climber(
         risers=risers,
         tread=tread,
     )
-    model = crowd_model(building, seed)
+    types = {} if kind is None else {"pedestrian_types": (PedestrianType.named(kind),)}
+    model = crowd_model(building, seed, **types)
     x = going + LANDING - CLEARANCE if up else CLEARANCE - LANDING
     model.add_pedestrians(
         building.places([(x, WIDTH / 2.0)], level=0 if up else 1),
@@ -186,6 +200,48 @@ def up_from_a_corridor(
     found["flow_in"] = (len(into) - 1) / float(into[-1] - into[0])
     found["flow_up"] = (len(early) - 1) / float(early[-1] - early[0])
     return found
+
+
+def along_a_stair(seed: int, *, up: bool, riser: float, tread: float) -> dict[str, Any]:
+    """100 people leave a room of 10 m x 10 m over a stair 2 m wide (RiMEA 4.1.1, test 13).
+
+    Args:
+        seed: of the run.
+        up: whether they walk up.
+        riser: height of a riser, metres.
+        tread: depth of a tread, metres; the stair is as near to 5 m long in plan as it allows.
+
+    Returns:
+        The common figures; ``density`` (k,) persons/m2 on the stair and ``along`` (k,) speeds along
+        it in plan over 1.5 s, m/s, of all people on it in each frame.
+    """
+    risers = round(5.0 / tread) + 1
+    start, end = 12.0, 12.0 + (risers - 1) * tread
+    before = Polygon([(0, 0), (10, 0), (10, 4), (12, 4), (12, 6), (10, 6), (10, 10), (0, 10)])
+    behind = box(end, 4.0, end + 2.0, 6.0)
+    exits = [Exit("out", *_line(end + 2.0, 4.0, 6.0))]
+    rise = risers * riser
+    if up:
+        lower, upper = Level(0, before), Level(1, behind, rise, exits=exits)
+        head = ((end, 4.0), (end, 6.0))
+    else:
+        lower, upper = Level(0, behind, exits=exits), Level(1, before, rise)
+        head = _line(start, 4.0, 6.0)
+    building = _building(lower, upper, head=head, risers=risers, tread=tread)
+    model = crowd_model(building, seed)
+    places = building.random_points(
+        len(AGE_GROUPS), model.rng, level=0 if up else 1, spacing=SPACING, clearance=CLEARANCE
+    )
+    model.add_pedestrians(places, preferred_speeds=AGE_GROUPS)
+    run = evacuate(model, 400.0)
+    stair = box(start, 4.0, end, 6.0)
+    found = speeds_along(run.trajectories, (1.0, 0.0), window=1.5, area=stair)
+    step = np.round(found.time * run.trajectories.frame_rate).astype(np.int64)
+    return {
+        **run.figures(),
+        "density": counted(run, stair, 1.0 / run.trajectories.frame_rate)[step] / stair.area,
+        "along": found.speed,
+    }
 
 
 def _building(
