@@ -11,9 +11,10 @@ import shapely
 from numpy.typing import NDArray
 from shapely import Polygon, box
 
-from mesa_mobility import Building, Exit, Level, Stairs, Trajectories
+from mesa_mobility import Building, Exit, Level, PedestrianType, Stairs, Trajectories
 from mesa_mobility.results import by_level, climbs, flow
 from mesa_mobility.verification.runs import Run, crowd_model, evacuate
+from mesa_mobility.verification.scenarios.buildings.stairs import lone_climber
 
 RISERS, RISER, TREAD, WIDTH = 18, 0.17, 0.29, 1.2
 RISE, GOING = RISERS * RISER, (RISERS - 1) * TREAD
@@ -36,6 +37,9 @@ EVERY_S = 0.5
 
 QUEUED = 80
 """People in each of the two streams that merge."""
+
+OF_A_TYPE = 60
+"""People of one type who leave a room."""
 
 STOREYS, ON_A_STOREY, DELAY_S = 4, 40, 60.0
 """The office that empties at once or in phases; people wait so long in the second phase."""
@@ -71,6 +75,40 @@ def stream(seed: int, *, up: bool, density: float) -> dict[str, Any]:
         "flow": middle_flow(times, people) if crowded else None,
         "densities": found.tolist(),
         "speeds": speeds.tolist(),
+    }
+
+
+def of_one_type(seed: int, kind: str, *, up: bool) -> dict[str, Any]:
+    """One person of a type alone on a stair, and 60 of them who leave a room by it.
+
+    Args:
+        seed: of the runs.
+        kind: name of the type.
+        up: whether they walk up.
+
+    Returns:
+        ``level_mps``, the mean speed that they prefer on a level floor; ``free_mps``, that along
+        the slope of one who prefers it; ``flow``, persons/s from the room.
+    """
+    each = PedestrianType.named(kind)
+    preferred = float(each.draw_speeds(1000, np.random.default_rng(seed)).mean())
+    stair = {"risers": RISERS, "riser": RISER, "tread": TREAD}
+    alone = lone_climber(seed, up=up, preferred=preferred, kind=kind, **stair)
+    building = stair_after(ROOM, up=up)
+    model = crowd_model(building, seed, pedestrian_types=(each,))
+    places = building.random_points(
+        OF_A_TYPE, model.rng, level=0 if up else 1, spacing=0.5, clearance=each.half_width + 0.05
+    )
+    model.add_pedestrians(places)
+    run = evacuate(model, LIMIT_S)
+    times = run.crossing_times((GOING / 2, 0.0), (GOING / 2, WIDTH))
+    return {
+        **safety(run),
+        "up": up,
+        "kind": kind,
+        "level_mps": preferred,
+        "free_mps": alone["speed_mps"],
+        "flow": middle_flow(times, OF_A_TYPE),
     }
 
 

@@ -16,8 +16,10 @@ import numpy as np
 from blocks import give, table
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from stairs_scenes import ENDS, RISER, TREAD, WIDTH, counted, merging, office, stream
+from stairs_scenes import ENDS, RISER, TREAD, WIDTH, counted, merging, of_one_type, office, stream
 
+from mesa_mobility import PedestrianType
+from mesa_mobility.populations import presets
 from mesa_mobility.verification import catalogue, suite
 from mesa_mobility.verification.report import measured_text
 from mesa_mobility.verification.scenarios.buildings.stairs import lone_climber
@@ -31,6 +33,9 @@ STAIRS = ((0.17, 0.29), (0.18, 0.28), (0.15, 0.33))
 
 DENSITIES = (0.3, 0.6, 1.0, 1.5, 2.0, math.inf)
 """In the corridor before the stair, persons/m2; the last is a crowd in a room."""
+
+TYPE_SEEDS = 2
+"""Seeds for each type at most."""
 
 EDGES = np.arange(0.0, 4.51, 0.5)
 """Of bins of density, persons/m2."""
@@ -80,6 +85,7 @@ def main() -> None:
     told = f"Seeds 1 to {given.seeds}. {counted(runs)}"
     give(given.out, "stairs-free", free_speeds())
     give(given.out, "stairs-flow", f"{told}\n\n{flows(streams)}")
+    give(given.out, "stairs-types", by_type(min(given.seeds, TYPE_SEEDS)))
     give(given.out, "stairs-merging", shares(merged))
     give(given.out, "stairs-phases", phases(offices))
     give(given.out, "stairs-documented", documented())
@@ -169,6 +175,32 @@ def spread(speeds: NDArray[np.float64]) -> str:
         return "-"
     low, middle, high = np.percentile(speeds, (10, 50, 90))
     return f"{middle:.2f} ({low:.2f} to {high:.2f})"
+
+
+def by_type(seeds: int) -> str:
+    """Speeds alone and flows of each type that uses stairs."""
+    kinds = [kind for kind in presets()["every_type"].names if PedestrianType.named(kind).climbs]
+    rows, runs = [], []
+    for kind in kinds:
+        found = {
+            up: [of_one_type(seed, kind, up=up) for seed in range(1, seeds + 1)] for up in WAYS
+        }
+        runs += [run for each in found.values() for run in each]
+        mean = {
+            (up, name): float(np.mean([run[name] for run in each]))
+            for up, each in found.items()
+            for name in ("level_mps", "free_mps", "flow")
+        }
+        rows.append(
+            (
+                kind,
+                f"{mean[False, 'level_mps']:.2f}",
+                *(f"{mean[up, 'free_mps']:.2f}" for up in WAYS),
+                *(f"{mean[up, 'flow'] / WIDTH:.2f}" for up in WAYS),
+            )
+        )
+    heads = ("type", "level, m/s", "down, m/s", "up, m/s", "flow down", "flow up")
+    return f"Seeds 1 to {seeds}. {counted(runs)}\n\n{table(heads, rows)}"
 
 
 def shares(merged: Sequence[dict[str, Any]]) -> str:

@@ -10,6 +10,7 @@ from mesa_mobility.buildings import ON_STAIRS
 from mesa_mobility.compiled import threads
 from mesa_mobility.crowd import Watch
 from mesa_mobility.results.decisions import Decisions, read_decisions
+from mesa_mobility.verification.scenarios.buildings.stairs import lone_climber
 from tests.fixtures.buildings import two_storeys
 
 OFFICE = two_storeys()
@@ -127,3 +128,18 @@ def test_types_without_maps_for_stairs_keep_their_own(name):
     model = model_of(2, kind)
     assert model.mobility_maps == ((kind.mobility_map,),)
     model.run(max_seconds=1)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("up", [False, True])
+def test_people_who_are_older_or_use_aids_are_slower_on_stairs(up):
+    speeds = []
+    for kind in ("able_bodied", "older_adult", "cane", "walking_frame"):
+        each = PedestrianType.named(kind)
+        prefers = float(each.draw_speeds(1000, np.random.default_rng(1)).mean())
+        stair = {"risers": 18, "riser": 0.17, "tread": 0.29}
+        alone = lone_climber(1, up=up, preferred=prefers, kind=kind, **stair)
+        speeds.append(alone["speed_mps"])
+        # On stairs like these, the speed in the SFPE Handbook is 0.96 of 1.19 m/s; up, 0.8 of it.
+        assert speeds[-1] == pytest.approx(0.96 / 1.19 * (0.8 if up else 1.0) * prefers, rel=0.06)
+    assert speeds == sorted(speeds, reverse=True)

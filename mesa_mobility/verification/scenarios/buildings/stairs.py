@@ -77,7 +77,8 @@ def lone_climber(
     )
     types = {} if kind is None else {"pedestrian_types": (PedestrianType.named(kind),)}
     model = crowd_model(building, seed, **types)
-    x = going + LANDING - CLEARANCE if up else CLEARANCE - LANDING
+    off_wall = max(CLEARANCE, model.pedestrian_types[0].half_width + 0.01)
+    x = going + LANDING - off_wall if up else off_wall - LANDING
     model.add_pedestrians(
         building.places([(x, WIDTH / 2.0)], level=0 if up else 1),
         headings=[math.pi if up else 0.0],
