@@ -125,6 +125,18 @@ class Places:
             found[on] = self._owners[flight.name]
         return found
 
+    def lifts(self, places: ArrayLike) -> NDArray[np.int16]:
+        """(n,) numbers of the lifts in which (n, 3) true places are; -1 for other places."""
+        xyz = np.asarray(places, dtype=np.float64).reshape(-1, 3)
+        found = np.full(len(xyz), -1, dtype=np.int16)
+        for number, lift in enumerate(self._lifts):
+            stops = self._elevations[[self._number[sheet_of(each)] for each in lift.numbers]]
+            beyond = np.maximum(stops.min() - xyz[:, 2], xyz[:, 2] - stops.max())
+            between = np.flatnonzero(beyond <= _OFF)
+            inside = shapely.contains_xy(lift.shape, *xyz[between, :2].T)
+            found[between[inside]] = number
+        return found
+
     def _copied(self, flight: Flight, sheet: int, xy: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Whether places beyond a flight, on a sheet, are on its strip and not on the floor."""
         floor = self._sheets[sheet].floor

@@ -15,6 +15,9 @@ from mesa_mobility.errors import FloorPlanError
 DOORWAY = 0.1
 """Metres from the floor of a level to the car: the wall of the shaft."""
 
+CALLS = 4.0
+"""Metres from the middle of the door within which people call a lift."""
+
 _LEAST_DOOR, _LEAST_CAR = 0.7, 0.8
 """Least clear width of a door, and least width and depth of a car, metres."""
 
