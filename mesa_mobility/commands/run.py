@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -162,8 +162,10 @@ def run(
                 "wall_s": round(wall, 3),
                 "cpu_s": round(cpu, 3),
                 "overlaps": safety.overlaps,
+                "overlapping_pairs": [asdict(each) for each in safety.overlapping_pairs],
                 "min_distance_m": safety.min_distance_m,
                 "wall_crossings": safety.wall_crossings,
+                "crossings": [asdict(each) for each in safety.crossings],
                 "off_floor": safety.off_floor,
                 "stalled": bool(simulation.stalled),
                 "interrupted": interrupted,
@@ -250,6 +252,8 @@ def _simulate(
 
 
 def _figures(summary: dict[str, Any]) -> dict[str, str]:
+    from mesa_mobility.results.measures.sites import first_of
+
     egress = summary["egress_s"]
     distance, speed = summary["min_distance_m"], summary["mean_speed_mps"]
     types = summary["by_type"] if len(summary["by_type"]) > 1 else []
@@ -289,9 +293,9 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
         "Decisions": f"{summary['decisions']}",
         "Fallback": f"{summary['fallback_decision_share']:.1%} of decisions, "
         f"{summary['fallback_time_share']:.1%} of the time",
-        "Overlaps": f"{summary['overlaps']}",
+        "Overlaps": f"{summary['overlaps']}{first_of(summary, 'overlapping_pairs')}",
         "Smallest distance": "-" if distance is None else f"{distance:.3f} m",
-        "Wall crossings": f"{summary['wall_crossings']}",
+        "Wall crossings": f"{summary['wall_crossings']}{first_of(summary, 'crossings')}",
         "Off the floor": f"{summary['off_floor']} frames",
         "Wall time": f"{summary['wall_s']:.1f} s ({summary['cpu_s']:.1f} s of CPU)",
     }

@@ -59,6 +59,9 @@ class Lift:
     depth: float = 1.4
     everybody: bool = False
 
+    kind = "lift"
+    """How messages and files call it."""
+
     def __post_init__(self) -> None:
         what = f"lift {self.name!r}"
         object.__setattr__(self, "door", line_of("lift", self.name, "door", self.door))

@@ -1,4 +1,4 @@
-"""People in lifts of a building: in tracks that are made by hand, and in a run that is read back."""
+"""People in lifts of a building, in tracks that are made by hand and in a run that is read back."""
 
 import math
 
@@ -39,8 +39,12 @@ def car(z):
 # A place a second. The car goes up to level 2, then down to 1 and to 0, and up again.
 PEOPLE = [
     # Down from 2 to 0, with a stop at 1. Out of the building in the last second.
-    [far(6), far(6), *[near(6)] * 3, *[car(z) for z in (6, 6, 4.5, 3, 3, 1.5, 0)], near(0), far(0)]
-    + [(-0.1, 4.0, 0.0)],
+    [
+        *[far(6)] * 2,
+        *[near(6)] * 3,
+        *[car(z) for z in (6, 6, 4.5, 3, 3, 1.5, 0)],
+        *[near(0), far(0), (-0.1, 4.0, 0.0)],
+    ],
     # Comes near and goes away again before they wait. Down from 2 to 1.
     [near(6), near(6), far(6), near(6), near(6), *[car(z) for z in (6, 6, 4.5, 3)], *[near(3)] * 6],
     # Down from 1 to 0.
