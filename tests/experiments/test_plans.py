@@ -71,8 +71,8 @@ def test_runs_have_columns_of_levels_stairs_lifts_and_refuges(tmp_path):
     assert row["lift.lift.longest_wait_s"] == lifts.longest_wait_s["lift"]
     assert row["stairs.south.people"] + row["lift.lift.people"] == row["level.1.people"]
     assert (row["refuge.north lobby.waiting"], row["cannot_leave"]) == (0.0, 0.0)
-    [mean] = store.estimates("mean lift.lift.mean_wait_s")["value"]
-    assert mean == lifts.mean_wait_s["lift"]
+    [mean] = store.estimates("mean lift.lift.mean_wait_s").values()
+    assert mean.value == lifts.mean_wait_s["lift"]
     page = tmp_path / "report.html"
     write_report(store, page)
     text = page.read_text()
@@ -85,7 +85,7 @@ def test_runs_without_kept_doors_say_who_cannot_leave(tmp_path):
     content = json.loads((tmp_path / "office.geojson").read_text())
     for each in content["features"]:
         if each["properties"].get("kind") == "lift":
-            each["properties"]["closed"] = True
+            each["properties"]["closed"] = [f"lift at level {k}" for k in (0, 1)]
     (tmp_path / "office.geojson").write_text(json.dumps(content))
     fixed = {"plan": str(tmp_path / "office.geojson"), "population": "wheelchair_powered"}
     experiment = Experiment("floor_plan", {"pedestrians": 6}, fixed=fixed, max_seconds=60)
