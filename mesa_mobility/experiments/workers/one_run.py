@@ -54,7 +54,7 @@ class Setup:
         time_limit: seconds of real time at most, or None.
         occupancy: whether rows keep the occupancy.
         trajectories: whether trajectories are written.
-        doors: whether rows have figures of doors, rooms and clearing times.
+        doors: whether rows have figures of doors, rooms, levels, stairs, lifts and clearing times.
         column_types: name of the Arrow type of each parameter.
         store: path or URL.
         may_end: whether the process may be ended where a run does not return to Python in time.
