@@ -218,7 +218,7 @@ class _Riders:
         edges[beyond] -= 1
         riding = np.cumsum(edges)[:-1] > 0
         away = np.hypot(*(self._xy - middle_of(self._lifts[number].door)).T)
-        near = ((away < CALLS) | (self._lift == number)) & ~riding
+        near = (away < CALLS) & ~riding
         came = np.append(False, self._same)[first]
         waits = np.where(came, 0.0, np.nan)
         for height in np.unique(heights):

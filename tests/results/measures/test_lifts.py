@@ -119,6 +119,18 @@ def test_somebody_who_has_just_ridden_calls_again():
     assert lift.to_level.tolist() == [0, 1]
 
 
+def test_only_the_way_on_the_level_before_the_door_counts_as_wait():
+    stairs = [(18.0, 4.5, z) for z in (0.0, 1.5)]
+    ride = [car(3), car(0), near(0)]
+    ways = [
+        [*stairs, near(3), near(3), *ride],
+        [near(0), far(3), far(3), far(3), *ride],
+        [*[near(3)] * 4, *ride],
+    ]
+    lift = rides(tracks_of(ways), three_storeys())["lift"]
+    assert lift.wait.tolist() == [2.0, 0.0, 4.0]
+
+
 def test_nobody_need_be_there_and_tracks_have_elevations():
     building = three_storeys()
     nobody = Trajectories([], [], [], [], [], last_frame=3, fields={"z": []})
