@@ -106,9 +106,12 @@ class Places:
             sheet[riding] = stops[np.argmin(away, axis=1)]
         if (sheet < 0).any():
             lost = xyz[np.argmax(sheet < 0)].tolist()
+            levels = np.flatnonzero(self._levels != ON_STAIRS)
+            near = levels[np.argmin(np.abs(self._elevations[levels] - lost[2]))]
             raise FloorPlanError(
                 f"({', '.join(f'{each:.2f}' for each in lost)}): expected a place on a level, a "
-                "landing or a flight of stairs, or in a lift"
+                "landing or a flight of stairs, or in a lift; the nearest level is "
+                f"{self._levels[near]}, at {self._elevations[near]:g} m"
             )
         return xyz[:, :2] + self._shifts[sheet]
 

@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from mesa_mobility.results.measures.occupancy import departures as departures
     from mesa_mobility.results.measures.occupancy import egress_time as egress_time
     from mesa_mobility.results.measures.occupancy import occupancy as occupancy
+    from mesa_mobility.results.measures.sites import Site as Site
     from mesa_mobility.results.measures.speeds import SpeedsAlong as SpeedsAlong
     from mesa_mobility.results.measures.speeds import direction_changes as direction_changes
     from mesa_mobility.results.measures.speeds import mean_speed as mean_speed

@@ -11,8 +11,7 @@ from mesa_mobility import Building, Exit, FloorPlan, Level, PedestrianModel, Tra
 from mesa_mobility.buildings import ON_STAIRS
 from mesa_mobility.commands.models.making import ModelOptions, create_model
 from mesa_mobility.errors import ModelError
-from mesa_mobility.results import check_safety, read_parquet
-from mesa_mobility.results.measures.sites import Site
+from mesa_mobility.results import Site, check_safety, read_parquet
 from tests.fixtures.buildings import HALL, RISE, two_storeys, with_refuge_and_lift
 from tests.fixtures.engine import ENGINE
 from tests.fixtures.seams import overlaps

@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 from mesa_mobility import Building, Exit, Level, Lift, Trajectories
 from mesa_mobility.commands.app import app
+from mesa_mobility.commands.run import _figures
 from mesa_mobility.errors import ResultsError
 from mesa_mobility.results import by_lift, occupancy_by_lift, rides
 from mesa_mobility.results.run import read_run
@@ -207,3 +208,14 @@ def test_the_command_prints_waits(run):
         f"{row['mean_wait_s']:.1f} s (mean), {row['longest_wait_s']:.1f} s (longest)"
     )
     assert expected in " ".join(said.split())
+
+
+def test_the_command_prints_where_the_first_overlap_and_step_through_a_wall_are(run):
+    summary = dict(run[0].summary)
+    assert (_figures(summary)["Overlaps"], _figures(summary)["Wall crossings"]) == ("0", "0")
+    at = {"x": 1.0, "y": 2.0, "z": 3.06, "on": "level 1"}
+    summary |= {"overlaps": 2, "overlapping_pairs": [{"frame": 9, "at": at}, {"frame": 10}]}
+    summary |= {"wall_crossings": 1, "crossings": [{"frame": 7, "at": at | {"on": ""}}]}
+    said = _figures(summary)
+    assert said["Overlaps"] == "2, the first in frame 9 on level 1 at (1.00, 2.00, 3.06)"
+    assert said["Wall crossings"] == "1, the first in frame 7 at (1.00, 2.00)"
