@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from pathlib import Path
 
 import pytest
 
@@ -41,24 +42,29 @@ def test_runs_in_a_building_and_their_report(tmp_path, office):
     assert "Clearing times: " in text
 
 
-def test_runs_have_columns_of_levels_stairs_lifts_and_refuges(tmp_path):
-    building = with_refuge_and_lift()
-    building.write_geojson(tmp_path / "office.geojson")
+@pytest.fixture(scope="module")
+def store(tmp_path_factory):
+    """The store of a run in a building with a lift, half of its people in wheelchairs."""
+    folder = tmp_path_factory.mktemp("lift")
+    with_refuge_and_lift().write_geojson(folder / "office.geojson")
     experiment = Experiment(
         "floor_plan",
         {"pedestrians": 10},
         fixed={
-            "plan": str(tmp_path / "office.geojson"),
+            "plan": str(folder / "office.geojson"),
             "population": "able_bodied: 0.5, wheelchair_powered: 0.5",
         },
-        max_seconds=120,
+        max_seconds=200,
         keep=["doors", "trajectories"],
+        seeds="common",  # the path of the plan counts otherwise
     )
-    store = run_experiment(experiment, tmp_path / "s", executor="serial")
-    frame = store.frame()
-    row = frame.iloc[0]
+    return run_experiment(experiment, folder / "s", executor="serial")
+
+
+def test_runs_have_columns_of_levels_stairs_lifts_and_refuges(store):
+    building, row = with_refuge_and_lift(), store.frame().iloc[0]
     assert row["status"] == "done", row["error"]
-    [file] = (tmp_path / "s" / "trajectories").iterdir()
+    [file] = Path(str(store), "trajectories").iterdir()
     tracks = read_parquet(file)
     levels, lifts = by_level(tracks, building), by_lift(tracks, building)
     stairs = by_stairs(tracks, building)
@@ -73,9 +79,12 @@ def test_runs_have_columns_of_levels_stairs_lifts_and_refuges(tmp_path):
     assert (row["refuge.north lobby.waiting"], row["cannot_leave"]) == (0.0, 0.0)
     [mean] = store.estimates("mean lift.lift.mean_wait_s").values()
     assert mean.value == lifts.mean_wait_s["lift"]
-    page = tmp_path / "report.html"
-    write_report(store, page)
-    text = page.read_text()
+
+
+@pytest.mark.thorough
+def test_reports_have_tables_of_levels_stairs_and_lifts(store, tmp_path):
+    write_report(store, tmp_path / "report.html")
+    text = (tmp_path / "report.html").read_text()
     for head in ("Levels", "Stairs", "Lifts"):
         assert f"{head}: means over the runs" in text
 
@@ -88,7 +97,9 @@ def test_runs_without_kept_doors_say_who_cannot_leave(tmp_path):
             each["properties"]["closed"] = [f"lift at level {k}" for k in (0, 1)]
     (tmp_path / "office.geojson").write_text(json.dumps(content))
     fixed = {"plan": str(tmp_path / "office.geojson"), "population": "wheelchair_powered"}
-    experiment = Experiment("floor_plan", {"pedestrians": 6}, fixed=fixed, max_seconds=60)
+    experiment = Experiment(
+        "floor_plan", {"pedestrians": 6}, fixed=fixed, max_seconds=90, seeds="common"
+    )
     row = run_experiment(experiment, tmp_path / "s", executor="serial").frame().iloc[0]
     assert row["status"] in ("done", "blocked"), row["error"]
     assert row["cannot_leave"] == row["refuge.north lobby.waiting"] == row["left_inside"] > 0
