@@ -271,6 +271,17 @@ class Building:
         """
         return self._places.stairs(places)
 
+    def lifts_at(self, places: ArrayLike) -> NDArray[np.int16]:
+        """The lifts in which true places are: behind the line of the door, at any height.
+
+        Args:
+            places: (n, 3) x, y and z, metres.
+
+        Returns:
+            (n,) indices in `lifts`; -1 for places that are in no lift.
+        """
+        return self._places.lifts(places)
+
     def shapes_of(self, stairs: Stairs | Ramp | Escalator) -> list[Polygon]:
         """The flights and landings of stairs, or a ramp, in plan, in the building's coordinates."""
         number = self.stairs.index(stairs)

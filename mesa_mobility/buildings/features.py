@@ -18,7 +18,7 @@ from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan.formats import geojson
 
-STAIRS, RAMP, ESCALATOR, LIFT = Stairs.kind, Ramp.kind, Escalator.kind, "lift"
+STAIRS, RAMP, ESCALATOR, LIFT = Stairs.kind, Ramp.kind, Escalator.kind, Lift.kind
 
 REFUGE = "refuge"
 

@@ -106,9 +106,12 @@ class Places:
             sheet[riding] = stops[np.argmin(away, axis=1)]
         if (sheet < 0).any():
             lost = xyz[np.argmax(sheet < 0)].tolist()
+            levels = np.flatnonzero(self._levels != ON_STAIRS)
+            near = levels[np.argmin(np.abs(self._elevations[levels] - lost[2]))]
             raise FloorPlanError(
                 f"({', '.join(f'{each:.2f}' for each in lost)}): expected a place on a level, a "
-                "landing or a flight of stairs, or in a lift"
+                "landing or a flight of stairs, or in a lift; the nearest level is "
+                f"{self._levels[near]}, at {self._elevations[near]:g} m"
             )
         return xyz[:, :2] + self._shifts[sheet]
 
@@ -123,6 +126,18 @@ class Places:
         for flight in self._flights:
             on, _ = _at(flight, xyz, _OFF)
             found[on] = self._owners[flight.name]
+        return found
+
+    def lifts(self, places: ArrayLike) -> NDArray[np.int16]:
+        """(n,) numbers of the lifts in which (n, 3) true places are; -1 for other places."""
+        xyz = np.asarray(places, dtype=np.float64).reshape(-1, 3)
+        found = np.full(len(xyz), -1, dtype=np.int16)
+        for number, lift in enumerate(self._lifts):
+            stops = self._elevations[[self._number[sheet_of(each)] for each in lift.numbers]]
+            beyond = np.maximum(stops.min() - xyz[:, 2], xyz[:, 2] - stops.max())
+            between = np.flatnonzero(beyond <= _OFF)
+            inside = shapely.contains_xy(lift.shape, *xyz[between, :2].T)
+            found[between[inside]] = number
         return found
 
     def _copied(self, flight: Flight, sheet: int, xy: NDArray[np.float64]) -> NDArray[np.bool_]:

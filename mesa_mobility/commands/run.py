@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -132,7 +132,7 @@ def run(
 
     from mesa_mobility.results import Trajectories, check_safety, check_writable, write_run
     from mesa_mobility.results.engineering.rooms import check_rooms, rooms_of
-    from mesa_mobility.results.engineering.summary import figures_of_places
+    from mesa_mobility.results.engineering.summary import figures_of_places, figures_of_storeys
     from mesa_mobility.results.measures.by_type import rows_by_type
     from mesa_mobility.results.run import RUN_FILES, Run
 
@@ -155,15 +155,17 @@ def run(
                 "preset": options.preset or getattr(simulation, "preset", "default"),
                 "seed": options.seed,
                 "by_type": rows_by_type(trajectories) if "type" in trajectories.person_data else [],
-                **_by_storey(trajectories, building),
+                **figures_of_storeys(trajectories, building),
                 **figures_of_places(trajectories, building or plan, every_room),
                 **origin_of(given, simulation),
                 "behaviors": options.behaviors or [],
                 "wall_s": round(wall, 3),
                 "cpu_s": round(cpu, 3),
                 "overlaps": safety.overlaps,
+                "overlapping_pairs": [asdict(each) for each in safety.overlapping_pairs],
                 "min_distance_m": safety.min_distance_m,
                 "wall_crossings": safety.wall_crossings,
+                "crossings": [asdict(each) for each in safety.crossings],
                 "off_floor": safety.off_floor,
                 "stalled": bool(simulation.stalled),
                 "interrupted": interrupted,
@@ -201,19 +203,6 @@ def run(
         raise typer.Exit(STALLED)
     if stood:
         say(f"blocked: {stood}")
-
-
-def _by_storey(trajectories: Any, building: Any) -> dict[str, Any]:
-    """Figures of the levels and stairs of a building, if it is a run in one."""
-    if building is None:
-        return {}
-    from mesa_mobility.results import by_level, by_stairs
-
-    tables = {"by_level": by_level, "by_stairs": by_stairs}
-    return {
-        name: measure(trajectories, building).reset_index().to_dict("records")
-        for name, measure in tables.items()
-    }
 
 
 def _write_report(found: Any, rooms: list[Any], path: Path, report: Callable[..., None]) -> None:
@@ -263,6 +252,8 @@ def _simulate(
 
 
 def _figures(summary: dict[str, Any]) -> dict[str, str]:
+    from mesa_mobility.results.measures.sites import first_of
+
     egress = summary["egress_s"]
     distance, speed = summary["min_distance_m"], summary["mean_speed_mps"]
     types = summary["by_type"] if len(summary["by_type"]) > 1 else []
@@ -285,8 +276,10 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
             for each in summary.get("by_stairs", ())
         },
         **{
-            f"Lift {each['lift']}": f"{each['carried']} people carried in {each['trips']} rides"
-            for each in summary.get("lifts", ())
+            f"Lift {each['lift']}": _figures_of_lift(each, found)
+            for each, found in zip(
+                summary.get("lifts", ()), summary.get("by_lift", ()), strict=True
+            )
         },
         **{
             f"Escalator {each['escalator']}": f"{each['carried']} people carried, "
@@ -300,9 +293,9 @@ def _figures(summary: dict[str, Any]) -> dict[str, str]:
         "Decisions": f"{summary['decisions']}",
         "Fallback": f"{summary['fallback_decision_share']:.1%} of decisions, "
         f"{summary['fallback_time_share']:.1%} of the time",
-        "Overlaps": f"{summary['overlaps']}",
+        "Overlaps": f"{summary['overlaps']}{first_of(summary, 'overlapping_pairs')}",
         "Smallest distance": "-" if distance is None else f"{distance:.3f} m",
-        "Wall crossings": f"{summary['wall_crossings']}",
+        "Wall crossings": f"{summary['wall_crossings']}{first_of(summary, 'crossings')}",
         "Off the floor": f"{summary['off_floor']} frames",
         "Wall time": f"{summary['wall_s']:.1f} s ({summary['cpu_s']:.1f} s of CPU)",
     }
@@ -334,3 +327,11 @@ def _figures_of_stairs(each: dict[str, Any]) -> str:
     text = f"{each['people']} people"
     mean = each["mean_s"]
     return text if math.isnan(mean) else f"{text}, {mean:.1f} s on average"
+
+
+def _figures_of_lift(each: dict[str, Any], found: dict[str, Any]) -> str:
+    text = f"{each['carried']} people carried in {each['trips']} rides"
+    if math.isnan(found["mean_wait_s"]):
+        return text
+    mean, longest = found["mean_wait_s"], found["longest_wait_s"]
+    return f"{text}, waited {mean:.1f} s (mean), {longest:.1f} s (longest)"

@@ -56,7 +56,8 @@ class Experiment:
         max_seconds: simulated seconds at most; runs that take longer end with people inside.
         time_limit: seconds of real time that a run may take; then it counts as timed out.
         keep: beside the figures of each run, its "occupancy" (people inside each second), its
-            "trajectories", and figures of its "doors", rooms and clearing times.
+            "trajectories", and figures of its "doors", rooms, levels, stairs, lifts and clearing
+            times.
         precision: with ``replications="auto"``, what is to be known how well.
         name: title of the report.
         seeds: "independent", or "common" to compare points run by run; see ``compare``.

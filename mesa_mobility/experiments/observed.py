@@ -18,6 +18,7 @@ from mesa_mobility.experiments.intervals import Estimate, mean_interval, quantil
 from mesa_mobility.experiments.storing.rows import (
     COMPUTING,
     FAILED,
+    LASTING,
     REACHED,
     STALLED,
     TIMED_OUT,
@@ -28,8 +29,12 @@ if TYPE_CHECKING:
 
 
 def is_time(column: str) -> bool:
-    """Whether a column has seconds until something happens: its name ends so, and is no rate."""
-    return column.endswith("_s") and not column.endswith("_per_s")
+    """Whether a column has seconds until something happens.
+
+    Its name ends so, and is neither a rate nor a time for which people are on stairs or at a lift.
+    """
+    lasts = column.startswith(LASTING) and column.rpartition(".")[2] not in REACHED
+    return column.endswith("_s") and not column.endswith("_per_s") and not lasts
 
 
 def observed(runs: pd.DataFrame, column: str) -> NDArray[np.float64]:

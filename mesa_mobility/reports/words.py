@@ -20,6 +20,12 @@ WORDS = {
     "first_s": "first passage (s)",
     "last_s": "last passage (s)",
     "people": "people who passed",
+    "clear_s": "time when it is empty for good (s)",
+    "mean_wait_s": "mean wait (s)",
+    "longest_wait_s": "longest wait (s)",
+    "mean_ride_s": "mean time in the car (s)",
+    "most": "most people at a time",
+    "cannot_leave": "people who cannot leave since they do not use stairs",
     "wall_s": "time to compute a run (s)",
     "cpu_s": "processor time of a run (s)",
     "decisions": "decisions taken",
@@ -28,9 +34,9 @@ WORDS = {
 }
 """Of the columns that runs have."""
 
-_PLACES = ("door", "room", "level", "stairs")
+_PLACES = ("door", "room", "level", "stairs", "lift", "escalator", "refuge")
 
-_IN_ROOMS = {
+_INSIDE = {
     "people": "people who were ever there",
     "first_s": "time when the first person has left (s)",
     "last_s": "time when the last person has left (s)",
@@ -55,7 +61,7 @@ def words_of(name: str, labels: Mapping[str, str] | None = None) -> str:
     kind, dot, rest = name.partition(".")
     if dot and kind in _PLACES and "." in rest:
         place, _, figure = rest.rpartition(".")
-        known = _IN_ROOMS if kind == "room" else {}
+        known = {} if kind == "door" else _INSIDE
         named = place if kind == "level" else f"“{place}”"
         return f"{kind} {named}: {known.get(figure) or words_of(figure)}"
     if name in WORDS:

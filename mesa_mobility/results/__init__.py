@@ -63,9 +63,14 @@ if TYPE_CHECKING:
     from mesa_mobility.results.measures.density import voronoi_density as voronoi_density
     from mesa_mobility.results.measures.gait import Sway as Sway
     from mesa_mobility.results.measures.gait import lateral_sway as lateral_sway
+    from mesa_mobility.results.measures.lifts import Rides as Rides
+    from mesa_mobility.results.measures.lifts import by_lift as by_lift
+    from mesa_mobility.results.measures.lifts import occupancy_by_lift as occupancy_by_lift
+    from mesa_mobility.results.measures.lifts import rides as rides
     from mesa_mobility.results.measures.occupancy import departures as departures
     from mesa_mobility.results.measures.occupancy import egress_time as egress_time
     from mesa_mobility.results.measures.occupancy import occupancy as occupancy
+    from mesa_mobility.results.measures.sites import Site as Site
     from mesa_mobility.results.measures.speeds import SpeedsAlong as SpeedsAlong
     from mesa_mobility.results.measures.speeds import direction_changes as direction_changes
     from mesa_mobility.results.measures.speeds import mean_speed as mean_speed

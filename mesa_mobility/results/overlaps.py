@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from mesa_mobility.buildings.headroom import HEADROOM_M
+from mesa_mobility.results.measures.sites import Site
 from mesa_mobility.results.trajectories import Trajectories
 
 # Rounding of floats may bring two bodies that just touch this much closer, metres.
@@ -19,12 +20,16 @@ NAMED = 10
 
 @dataclass(frozen=True)
 class Overlap:
-    """Two bodies that overlap in one frame; distance between their positions in metres."""
+    """Two bodies that overlap in one frame; distance between their positions in metres.
+
+    ``at`` is where the first of them is.
+    """
 
     frame: int
     first: int
     second: int
     distance_m: float
+    at: Site | None = field(default=None, compare=False)
 
 
 def count_overlaps(trajectories: Trajectories) -> tuple[int, list[Overlap], float | None]:

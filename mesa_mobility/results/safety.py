@@ -6,8 +6,8 @@ written and uses shapely and, for overlaps, SciPy's k-d tree.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 import shapely
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from shapely.geometry.base import BaseGeometry
 
 from mesa_mobility.errors import ResultsError
+from mesa_mobility.results.measures.sites import Site, sites_of
 from mesa_mobility.results.overlaps import NAMED, Overlap, count_overlaps
 from mesa_mobility.results.trajectories import Trajectories
 
@@ -34,11 +35,15 @@ CHUNK = 200_000
 @dataclass(frozen=True)
 class WallCrossing:
     """A step of one person, from `frame` to the next, on which they meet a wall segment: their
-    position, or the centre of a disc of their body."""
+    position, or the centre of a disc of their body. ``at`` is where the step begins."""
 
     frame: int
     person: int
     wall: int
+    at: Site | None = field(default=None, compare=False)
+
+
+_Named = TypeVar("_Named", Overlap, WallCrossing)
 
 
 @dataclass(frozen=True)
@@ -102,14 +107,21 @@ def check_safety(
     if building is not None:
         places = building.plane_places(np.column_stack((places, trajectories.z)))
     count, crossings = _wall_crossings(trajectories, places, segments)
+    named = [(each.frame, each.first) for each in pairs]
+    named += [(each.frame, each.person) for each in crossings]
+    sites = sites_of(trajectories, named, building)
     return SafetyReport(
         overlaps=overlaps,
-        overlapping_pairs=tuple(pairs),
+        overlapping_pairs=tuple(map(_placed, pairs, sites)),
         min_distance_m=nearest,
         wall_crossings=count,
-        crossings=tuple(crossings),
+        crossings=tuple(map(_placed, crossings, sites[len(pairs) :])),
         off_floor=None if floor is None else _off_floor(trajectories, places, floor),
     )
+
+
+def _placed(each: _Named, site: Site) -> _Named:
+    return replace(each, at=site)
 
 
 def _off_floor(trajectories: Trajectories, places: NDArray[np.float64], floor: BaseGeometry) -> int:

@@ -11,8 +11,8 @@ from mesa_mobility import Building, Exit, FloorPlan, Level, PedestrianModel, Tra
 from mesa_mobility.buildings import ON_STAIRS
 from mesa_mobility.commands.models.making import ModelOptions, create_model
 from mesa_mobility.errors import ModelError
-from mesa_mobility.results import check_safety, read_parquet
-from tests.fixtures.buildings import HALL, RISE, two_storeys
+from mesa_mobility.results import Site, check_safety, read_parquet
+from tests.fixtures.buildings import HALL, RISE, two_storeys, with_refuge_and_lift
 from tests.fixtures.engine import ENGINE
 from tests.fixtures.seams import overlaps
 
@@ -90,6 +90,38 @@ def test_the_safety_check_knows_storeys_and_flights(people, overlaps, crossings)
     report = check_safety(standing(office, *people), plan.walls, plan.free, building=office)
     assert (report.overlaps, report.wall_crossings) == (overlaps, crossings)
     assert report.off_floor == 0
+
+
+def test_overlaps_and_steps_through_walls_say_on_which_storey_they_are():
+    office = with_refuge_and_lift()
+    people = [
+        *[[(x, 4, 0)] * 3 for x in (4.0, 4.2)],
+        *[[(x, 4, RISE)] * 3 for x in (6.0, 6.2)],
+        *[[(x, 0.6, RISE * (12.93 - x) / 4.93)] * 3 for x in (10.0, 10.1)],
+        *[[(x, 7.4, z) for z in (RISE, 2.0, 1.0)] for x in (20.3, 20.5)],
+        [(1.0, 0.3, 0.0), (1.0, -0.3, 0.0), (1.0, -0.3, 0.0)],
+    ]
+    plan = office.floor_plan
+    report = check_safety(standing(office, *people), plan.walls, building=office)
+    height = RISE * (12.93 - 10.0) / 4.93
+    [*pairs] = report.overlapping_pairs[:4]
+    assert [(each.frame, each.first, each.second) for each in pairs] == [
+        (0, 2 * k, 2 * k + 1) for k in range(4)
+    ]
+    assert [each.at for each in pairs] == [
+        Site(4.0, 4.0, 0.0, "level 0"),
+        Site(6.0, 4.0, RISE, "level 1"),
+        Site(10.0, 0.6, height, "stairs south"),
+        Site(20.3, 7.4, RISE, "lift lift"),
+    ]
+    assert report.overlapping_pairs[7].at == Site(20.3, 7.4, 2.0, "lift lift")
+    assert str(pairs[1].at) == "on level 1 at (6.00, 4.00, 3.06)"
+    assert [(each.frame, each.person, each.at) for each in report.crossings] == [
+        (0, 8, Site(1.0, 0.3, 0.0, "level 0"))
+    ]
+    flat = Trajectories([0, 0], [0, 1], [1, 1], [2, 2], [0, 0], core_radius=0.2)
+    [pair] = check_safety(flat, np.empty((0, 4))).overlapping_pairs
+    assert (pair.at, str(pair.at)) == (Site(1.0, 2.0, 0.0), "at (1.00, 2.00)")
 
 
 def test_the_least_distance_is_of_people_on_one_storey():

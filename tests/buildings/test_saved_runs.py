@@ -151,6 +151,8 @@ def test_the_summary_has_tables_of_levels_and_stairs(folder):
     assert [each["stairs"] for each in stairs] == ["south", "north"]
     assert sum(each["down"] for each in stairs) == upstairs["people"] == upstairs["at_start"]
     assert all(each["up"] == 0 for each in stairs)
+    assert run.summary["by_lift"] == run.summary["overlapping_pairs"] == []
+    assert run.summary["crossings"] == []
 
 
 def test_a_level_is_asked_for_in_buildings_alone(folder, tmp_path):

@@ -92,11 +92,12 @@ def test_what_counts_as_not_reached():
     assert observed(rows, "mean_speed_mps").tolist()[:4] == [1.0, 1.1, 0.4, INF]
     assert observed(rows, "wall_s").tolist()[:4] == [2.0, 2.0, 3.0, INF]
     assert all(np.isnan(observed(rows, name)[4]) for name in rows if name != "status")
-    assert [is_time(name) for name in ("egress_s", "flow_per_s", "mean_speed_mps")] == [
-        True,
-        False,
-        False,
-    ]
+
+
+def test_which_columns_are_times():
+    times = ("egress_s", "level.1.clear_s", "stairs.north.t95_s", "door.lift.last_s")
+    others = ("flow_per_s", "mean_speed_mps", "lift.car.mean_wait_s", "stairs.north.mean_s")
+    assert [is_time(name) for name in times + others] == [True] * 4 + [False] * 4
 
 
 def test_of_what_is_no_time_no_percentile_is_given_where_one_is_lacking():

@@ -17,7 +17,7 @@ from mesa_mobility.experiments import (
 )
 from mesa_mobility.experiments.design.points import point_key, run_name
 from mesa_mobility.experiments.driver import _Driver
-from mesa_mobility.experiments.workers import batches, one_run
+from mesa_mobility.experiments.workers import batches, figures, one_run
 from mesa_mobility.experiments.workers.batches import Batch, Finished, Journal
 from tests.fixtures.experiments.quick import quick
 
@@ -99,10 +99,10 @@ def test_parameters_called_like_a_column_of_the_store_are_refused(name, tmp_path
 
 
 def test_a_figure_does_not_take_the_place_of_a_parameter(monkeypatch):
-    monkeypatch.setattr(one_run, "_has_pedestrians", lambda model: True)
-    monkeypatch.setattr(one_run, "_by_type", lambda model: {"types": [], "flow_per_s": 2.5})
+    monkeypatch.setattr(figures, "has_pedestrians", lambda model: True)
+    monkeypatch.setattr(figures, "_by_type", lambda model: {"types": [], "flow_per_s": 2.5})
     model = SimpleNamespace(summary=lambda: {"egress_s": 8.0})
-    row = one_run._figures(model, {"run", "flow_per_s"}, occupancy=False)
+    row = figures.figures_of(model, {"run", "flow_per_s"}, occupancy=False)
     assert row == {"egress_s": 8.0, "types": [], "summary_flow_per_s": 2.5}
 
 

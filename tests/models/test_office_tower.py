@@ -6,6 +6,7 @@ from mesa_mobility.models import OfficeTower
 from mesa_mobility.models.office_tower import office_tower
 
 from mesa_mobility.results import Trajectories, check_safety
+from mesa_mobility.results.engineering.summary import figures_of_storeys
 
 
 def test_the_tower_has_two_stairs_between_storeys_and_a_lift_to_all():
@@ -35,3 +36,15 @@ def test_all_get_out_those_in_wheelchairs_by_the_lift():
     plan = model.floor_plan
     tracks = Trajectories.of(model)
     assert check_safety(tracks, plan.walls, plan.free, building=model.building).passed
+    figures = figures_of_storeys(tracks, model.building)
+    assert [each["level"] for each in figures["by_level"]] == [2, 1, 0]
+    assert len(figures["by_stairs"]) == 4
+    [lift] = figures["by_lift"]
+    assert lift["people"] == lift["down"] == model.lifts.carried[0]
+    assert (lift["lift"], lift["up"]) == ("lift", 0)
+    assert lift["most"] <= model.building.lifts[0].capacity
+    log = model.lifts.log.begun
+    assert lift["rides"] == len(log)
+    # The doors close and open in 3 s each; the car takes as long as its way at full speed.
+    assert lift["mean_ride_s"] > 6.0 + 3.4 / model.building.lifts[0].speed
+    assert lift["longest_wait_s"] >= lift["mean_wait_s"] > 0.0

@@ -251,3 +251,27 @@ def test_a_run_in_a_building_has_levels_and_stairs(tmp_path):
         "0",
         "not counted",
     )
+
+
+def test_a_run_in_a_building_has_waits_for_lifts_and_places_of_overlaps(tmp_path):
+    from mesa_mobility.results.engineering.summary import figures_of_storeys
+    from tests.results.measures.test_lifts import PEOPLE, three_storeys, tracks_of
+
+    building, tracks = three_storeys(), tracks_of(PEOPLE)
+    at = {"x": 1.0, "y": 2.0, "z": 3.0, "on": "level 1"}
+    summary = {
+        "model": "floor_plan",
+        "overlaps": 3,
+        "overlapping_pairs": [{"frame": 9, "first": 0, "second": 1, "distance_m": 0.2, "at": at}],
+        "lifts": [{"lift": "lift", "trips": 6, "carried": 6}],
+        **figures_of_storeys(tracks, building),
+    }
+    page = tmp_path / "page.html"
+    write_run_report(Run(tracks, building, summary), measure(tracks, building), page)
+    text = page.read_text(encoding="utf-8")
+    assert rows_of(text, "People in lifts") == [
+        ("lift", "5", "3", "1", "4", "6", "4.2", "9.0", "4.0", "2"),
+        ("goods", "0", "0", "0", "0", "-", "-", "-", "-", "0"),
+    ]
+    found = "overlaps of bodies: 3, the first in frame 9 on level 1 at (1.00, 2.00, 3.00)."
+    assert found in text

@@ -15,6 +15,9 @@ from mesa_mobility.errors import FloorPlanError
 DOORWAY = 0.1
 """Metres from the floor of a level to the car: the wall of the shaft."""
 
+CALLS = 4.0
+"""Metres from the middle of the door within which people call a lift."""
+
 _LEAST_DOOR, _LEAST_CAR = 0.7, 0.8
 """Least clear width of a door, and least width and depth of a car, metres."""
 
@@ -55,6 +58,9 @@ class Lift:
     width: float = 1.1
     depth: float = 1.4
     everybody: bool = False
+
+    kind = "lift"
+    """How messages and files call it."""
 
     def __post_init__(self) -> None:
         what = f"lift {self.name!r}"

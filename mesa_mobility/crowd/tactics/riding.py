@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.buildings.connections.lift import CALLS
 from mesa_mobility.crowd.hooks import World
 from mesa_mobility.crowd.lifts.escalators import Escalators
 from mesa_mobility.crowd.lifts.lifts import NOBODY, Lifts
@@ -17,9 +18,6 @@ from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.visits import slow_down
 from mesa_mobility.schema import Kind
-
-CALLS = 4.0
-"""Metres from the door within which somebody calls a lift."""
 
 KEEPS_OFF = 1.2
 """Least metres from the door at which people wait, so that others can get out."""

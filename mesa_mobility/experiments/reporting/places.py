@@ -28,8 +28,35 @@ _PLACES = ("level", "stairs", "room")
 """Kinds of places that have clearing times, beside the whole floor."""
 
 
+_HEADS = {"level": "Levels", "stairs": "Stairs", "lift": "Lifts"}
+
+_STOREYS = {
+    "level": {
+        "people": "people who were ever there",
+        "clear_s": "empty after (s)",
+        "most": "most at a time",
+    },
+    "stairs": {
+        "people": "people who were ever there",
+        "down": "whole ways down",
+        "up": "whole ways up",
+        "mean_s": "mean time of these (s)",
+        "most": "most at a time",
+    },
+    "lift": {
+        "people": "people who rode",
+        "rides": "rides with people",
+        "mean_wait_s": "mean wait (s)",
+        "longest_wait_s": "longest wait (s)",
+        "mean_ride_s": "mean time in the car (s)",
+        "most": "most at a time",
+    },
+}
+"""Figures of parts of buildings, by kind."""
+
+
 def add_doors(page: Page, experiment: Any, frame: pd.DataFrame) -> None:
-    """Add figures of each door, then clearing times of each place, at each point of the design."""
+    """Add figures of doors, clearing times, and figures of levels, stairs and lifts, by point."""
     page.section("Doors, exits and clearing times", "doors")
     doors = [
         column.removeprefix("door.").removesuffix(".people")
@@ -60,6 +87,20 @@ def add_doors(page: Page, experiment: Any, frame: pd.DataFrame) -> None:
         "In brackets: 95 % intervals of the means. No mean is given where a run did not reach the "
         "share.",
     )
+    for kind, figures in _STOREYS.items():
+        parts = [
+            column.removeprefix(f"{kind}.").removesuffix(".most")
+            for column in map(str, frame.columns)
+            if column.startswith(f"{kind}.") and column.endswith(".most")
+        ]
+        if parts:
+            page.table(
+                f"{_HEADS[kind]}: means over the runs, by point of the design",
+                [*_named(experiment), kind, *figures.values()],
+                _rows(experiment, frame, {each: f"{kind}.{each}." for each in parts}, figures),
+                "In brackets: 95 % intervals of the means. No mean is given where a run has no "
+                "value.",
+            )
 
 
 def add_types(page: Page, experiment: Any, frame: pd.DataFrame) -> None:

@@ -21,6 +21,9 @@ COMPUTING = {"wall_s", "cpu_s"}
 REACHED = {"t50_s", "t95_s", "t100_s", "first_s"}
 """Ends of the names of times that a run which stalls later may have come to."""
 
+LASTING = ("stairs.", "lift.", "escalator.")
+"""Begins of the names of seconds for which something lasts, but for those in ``REACHED``."""
+
 Row: TypeAlias = dict[str, Any]
 
 RUNS = "runs"

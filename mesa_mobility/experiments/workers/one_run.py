@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-import math
 import socket
 import time
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from os import getpid
@@ -22,10 +21,15 @@ from mesa_mobility.experiments.storing.rows import (
     BLOCKED,
     DONE,
     FAILED,
-    SERIES,
     STALLED,
     TIMED_OUT,
     Row,
+)
+from mesa_mobility.experiments.workers.figures import (
+    figures_by_place,
+    figures_of,
+    has_pedestrians,
+    plain,
 )
 from mesa_mobility.plugins.parameters import parameters as parameters_of
 from mesa_mobility.reports.inputs import inputs_of
@@ -50,7 +54,7 @@ class Setup:
         time_limit: seconds of real time at most, or None.
         occupancy: whether rows keep the occupancy.
         trajectories: whether trajectories are written.
-        doors: whether rows have figures of doors, rooms and clearing times.
+        doors: whether rows have figures of doors, rooms, levels, stairs, lifts and clearing times.
         column_types: name of the Arrow type of each parameter.
         store: path or URL.
         may_end: whether the process may be ended where a run does not return to Python in time.
@@ -90,9 +94,9 @@ def run_once(setup: Setup, point: Point, replication: int) -> tuple[Row, Any]:
             row["warning"] = _warning(model, [str(each.message) for each in said])
             _advance(model, setup, wall)
         row["status"] = _status(model)
-        row |= _figures(model, set(row), occupancy=setup.occupancy)
-        if setup.doors and _has_pedestrians(model):
-            row |= _of_places(model)
+        row |= figures_of(model, set(row), occupancy=setup.occupancy)
+        if setup.doors and has_pedestrians(model):
+            row |= figures_by_place(model)
     except TimedOut as error:
         row |= {"status": TIMED_OUT, "error": str(error)}
     except KeyboardInterrupt:
@@ -109,7 +113,7 @@ def _status(model: Any) -> str:
     """The status of a run that has ended."""
     if getattr(model, "stalled", False):
         return STALLED
-    return BLOCKED if _has_pedestrians(model) and model.blocked else DONE
+    return BLOCKED if has_pedestrians(model) and model.blocked else DONE
 
 
 def first_columns(setup: Setup, point: Point, replication: int) -> Row:
@@ -132,13 +136,8 @@ def first_columns(setup: Setup, point: Point, replication: int) -> Row:
 
 def _short(error: BaseException) -> str:
     """An error on one line that a file can hold, and not all of a long one."""
-    text = _plain(one_line(error))
+    text = plain(one_line(error))
     return text if len(text) <= _LONGEST_ERROR else text[:_LONGEST_ERROR] + "..."
-
-
-def _plain(text: str) -> str:
-    """A text that files can hold; names of files may have bytes that are no letters."""
-    return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 @lru_cache(maxsize=8)
@@ -171,7 +170,7 @@ def make_model(model: type | str, point: Point, seed: int, *, record: bool = Fal
     if record:
         keywords["record"] = True
     made = kind(**keywords, rng=seed)
-    if _has_pedestrians(made):
+    if has_pedestrians(made):
         # Those of behaviours that the model has beside its preset's.
         made.set_parameters(rules_of(point).values, EXPERIMENT)
     return made
@@ -190,7 +189,7 @@ def _advance(model: Any, setup: Setup, began: float) -> None:
             raise TimedOut(f"took longer than {setup.time_limit:g} s")
 
     check()
-    if _has_pedestrians(model):
+    if has_pedestrians(model):
         with warnings.catch_warnings():
             # The row has it, and is read where the run is not.
             warnings.filterwarnings("ignore", "no behaviour has a weight above 0")
@@ -208,91 +207,6 @@ def _warning(model: Any, said: Sequence[str]) -> str | None:
     from mesa_mobility.crowd.costs.terms import without_weight
 
     found: list[str | None] = list(said)
-    if _has_pedestrians(model):
+    if has_pedestrians(model):
         found.append(without_weight(model.terms, [each.name for each in model.pedestrian_types]))
     return "; ".join(dict.fromkeys(filter(None, found))) or None
-
-
-def _has_pedestrians(model: Any) -> bool:
-    from mesa_mobility.crowd import PedestrianModel
-
-    return isinstance(model, PedestrianModel)
-
-
-def _figures(model: Any, taken: set[str], *, occupancy: bool) -> Row:
-    """Figures of a run: its summary, or else the last values that it has collected."""
-    if hasattr(model, "summary"):
-        summary: Mapping[str, Any] = model.summary()
-    else:
-        collected = model.datacollector.model_vars
-        summary = {name: values[-1] if values else None for name, values in collected.items()}
-    row: Row = {}
-    for name, value in summary.items():
-        value = value.item() if hasattr(value, "item") and not hasattr(value, "__len__") else value
-        if isinstance(value, int) and not isinstance(value, bool):
-            value = float(value)  # as the store has it; one without end is an error of the run
-        if isinstance(value, str):
-            value = _plain(value)
-        if value is None or isinstance(value, bool | float | str):
-            row[f"summary_{name}" if name in taken or name in SERIES else str(name)] = value
-    if not _has_pedestrians(model):
-        return row
-    more = _by_type(model)
-    if "blocked" in summary:
-        more["blocked"] = float(len(summary["blocked"]))
-    row |= {f"summary_{n}" if n in taken else n: v for n, v in more.items()}
-    if occupancy:
-        row["occupancy"] = [people for _, people in summary["occupancy"]]
-    return row
-
-
-def _of_places(model: Any) -> Row:
-    """Clearing times, and figures of doors and rooms, by names such as ``door.east.flow_per_s``."""
-    from mesa_mobility.results import Trajectories, clearing, rooms_of
-    from mesa_mobility.results.engineering.summary import figures_of_places
-
-    plan = getattr(model, "building", None) or model.floor_plan
-    tracks, rooms = Trajectories.of(model), rooms_of(plan)
-    row: Row = {}
-    for times in clearing(tracks, plan, rooms).reset_index().to_dict("records"):
-        where = "" if times["kind"] == "floor" else f"{times['kind']}.{times['place']}."
-        for name in ("t50_s", "t95_s", "t100_s"):
-            row[where + name] = None if math.isnan(times[name]) else float(times[name])
-    found = figures_of_places(tracks, plan, rooms)
-    for kind, places in (("door", found["doors"]), ("room", found["rooms"])):
-        for place, figures in places.items():
-            for name, value in figures.items():
-                row[f"{kind}.{place}.{name}"] = None if value is None else float(value)
-    return row
-
-
-def _by_type(model: Any) -> Row:
-    """How long people of each type took, where all are out, and the flow of those who are."""
-    crowd, count = model.crowd, model.population.count
-    left = ~crowd.active[:count]
-    seconds = crowd.active_frames[:count] / model.frame_rate
-    types = []
-    for number in sorted(set(crowd.type_index[:count].tolist())):
-        of = crowd.type_index[:count] == number
-        times = seconds[of & left]
-        # Of those who are out alone, the times of the slowest would be missing.
-        out = len(times) == int(of.sum())
-        types.append(
-            {
-                "type": int(number),
-                "people": int(of.sum()),
-                "left": len(times),
-                "mean_s": float(times.mean()) if out else None,
-                "longest_s": float(times.max()) if out else None,
-            }
-        )
-    times = seconds[left]
-    flow = None
-    # Times inside are times of leaving where everybody has been there from the start.
-    if len(times) > 1 and not len(model.sources) and times.max() > times.min():
-        flow = (len(times) - 1) / float(times.max() - times.min())
-    return {
-        "types": types,
-        "mean_time_inside_s": float(times.mean()) if count and left.all() else None,
-        "flow_per_s": flow,
-    }

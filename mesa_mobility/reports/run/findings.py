@@ -15,6 +15,7 @@ from mesa_mobility.reports.run.texts import count, in_words, level_words, number
 from mesa_mobility.results.engineering.maps import DENSE
 from mesa_mobility.results.engineering.measured import Measured
 from mesa_mobility.results.measures.by_type import EVERYBODY
+from mesa_mobility.results.measures.sites import first_of
 from mesa_mobility.results.measures.speeds import mean_speed
 from mesa_mobility.results.plots import plot_occupancy, plot_trajectories
 from mesa_mobility.results.run import Run, occupancy_curve, occupancy_curves_by_type
@@ -117,13 +118,14 @@ def _objections(summary: Any) -> list[str]:
     stood = len(summary.get("blocked") or ())
     if stood:
         said.append(f"{count(stood, 'person', 'people')} stood for a minute without a reason.")
-    for name, words in (
-        ("overlaps", "overlaps of bodies"),
-        ("wall_crossings", "steps through walls"),
-        ("off_floor", "frames of people off the floor"),
+    for name, words, places in (
+        ("overlaps", "overlaps of bodies", "overlapping_pairs"),
+        ("wall_crossings", "steps through walls", "crossings"),
+        ("off_floor", "frames of people off the floor", ""),
     ):
         if summary.get(name):
-            said.append(f"The independent check has found {words}: {summary[name]}.")
+            where = first_of(summary, places)
+            said.append(f"The independent check has found {words}: {summary[name]}{where}.")
     return said
 
 

@@ -140,11 +140,40 @@ def add_storeys(page: Page, run: Run, plan: FloorPlan | Building) -> None:
             "density is over flights and landings; levels of service are those of Fruin for "
             "stairs.",
         )
-    if lifts := summary.get("lifts"):
+    if lifts := summary.get("by_lift"):
+        trips = {each["lift"]: each["trips"] for each in summary.get("lifts", ())}
         page.table(
-            "Lifts",
-            ["lift", "rides", "people carried"],
-            [[each["lift"], each["trips"], each["carried"]] for each in lifts],
+            "People in lifts",
+            [
+                "lift",
+                "people who rode",
+                "ways down",
+                "ways up",
+                "rides of the car with people",
+                "with empty ones",
+                "mean wait (s)",
+                "longest wait (s)",
+                "mean time in the lift (s)",
+                "most at a time",
+            ],
+            [
+                [
+                    each["lift"],
+                    each["people"],
+                    each["down"],
+                    each["up"],
+                    each["rides"],
+                    trips.get(each["lift"]),
+                    number(each["mean_wait_s"]),
+                    number(each["longest_wait_s"]),
+                    number(each["mean_ride_s"]),
+                    each["most"],
+                ]
+                for each in lifts
+            ],
+            "People wait from when they come within 4 m of the door until they get in, the way to "
+            "the door included. People who never ride, such as those who still wait at the end, "
+            "are not counted.",
         )
 
 

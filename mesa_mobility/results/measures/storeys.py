@@ -128,9 +128,7 @@ def where(trajectories: Tracks, building: Building) -> Where:
         ResultsError: the tracks have no elevations.
         FloorPlanError: a place that is on no level, landing or flight.
     """
-    if "z" not in trajectories.fields:
-        raise ResultsError("the trajectories have no elevations, expected those of a building")
-    xyz = np.column_stack([trajectories.x, trajectories.y, trajectories.z])
+    xyz = true_places(trajectories)
     level = trajectories.fields.get("level")
     if level is None:
         level = building.true_places(building.plane_places(xyz))[1]
@@ -139,6 +137,17 @@ def where(trajectories: Tracks, building: Building) -> Where:
     stairs[off] = building.stairs_at(xyz[off])
     outside = trajectories.exit_frames[trajectories.person] == trajectories.frame
     return Where(level, stairs, ~outside)
+
+
+def true_places(trajectories: Tracks) -> FloatArray:
+    """(n, 3) x, y and z of each row, metres.
+
+    Raises:
+        ResultsError: the tracks have no elevations.
+    """
+    if "z" not in trajectories.fields:
+        raise ResultsError("the trajectories have no elevations, expected those of a building")
+    return np.column_stack([trajectories.x, trajectories.y, trajectories.z])
 
 
 def curve(trajectories: Tracks, rows: NDArray[np.bool_], every: float) -> list[list[float]]:
