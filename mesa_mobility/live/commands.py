@@ -8,10 +8,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.errors import LiveError
+from mesa_mobility.errors import LiveError, MobilityError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.live.fields import Fields, shown, text_of
-from mesa_mobility.live.levels import in_plane
+from mesa_mobility.live.levels import in_plane, in_true_places
 from mesa_mobility.live.run import Command, Run
 
 Reader: TypeAlias = Callable[[Fields, Hashable], Command]
@@ -142,13 +142,17 @@ def _add(fields: Fields, client: Hashable) -> Command:
         types = [each.name for each in run.model.pedestrian_types]
         if kind is not None and kind not in types:
             raise LiveError(f"type: got {shown(kind)}, expected one of {', '.join(types)}")
-        people = run.model.add_pedestrians(
-            in_plane(run.model, "positions", positions, level),
-            headings=None if heading is None else [heading] * len(positions),
-            preferred_speeds=None if speed is None else [speed] * len(positions),
-            exits=exits,
-            type_index=None if kind is None else types.index(kind),
-        )
+        points = in_plane(run.model, "positions", positions, level)
+        try:
+            people = run.model.add_pedestrians(
+                points,
+                headings=None if heading is None else [heading] * len(positions),
+                preferred_speeds=None if speed is None else [speed] * len(positions),
+                exits=exits,
+                type_index=None if kind is None else types.index(kind),
+            )
+        except MobilityError as error:
+            raise LiveError(in_true_places(str(error), points, positions)) from error
         return {"people": [person.row for person in people]}
 
     return command

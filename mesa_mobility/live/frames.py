@@ -136,6 +136,7 @@ def _of_json(message: str) -> Frame:
             raise LiveError(f"frame: a message of type {values['type']!r}, expected 'frame'")
         person = np.array(values["person"], dtype=np.int32)
         columns = [np.array(values[name], dtype=np.float64) for name in COLUMNS]
+        x, y, heading, vx, vy = columns
         z = level = None
         if "z" in values:
             z = np.array(values["z"], dtype=np.float64)
@@ -150,13 +151,13 @@ def _of_json(message: str) -> Frame:
             float(values["sent"]),
             bool(values["paused"]),
             person,
-            x=columns[0],
-            y=columns[1],
-            heading=columns[2],
-            vx=columns[3],
-            vy=columns[4],
-            z=z,
-            level=level,
+            x,
+            y,
+            heading,
+            vx,
+            vy,
+            z,
+            level,
         )
     except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
         reason = " ".join(str(error).split())

@@ -79,3 +79,15 @@ def in_plane(
             "stairs and lifts"
         )
     return points
+
+
+def in_true_places(
+    message: str, points: NDArray[np.float64], places: Sequence[tuple[float, float]]
+) -> str:
+    """A message of the model about one of (n, 2) points in its plane, with the place that a command
+    has named instead."""
+    for (x, y), (true_x, true_y) in zip(points.tolist(), places, strict=True):
+        for form in ("[{}, {}]", "({:.2f}, {:.2f})"):
+            if form.format(x, y) in message:
+                return message.replace(form.format(x, y), form.format(true_x, true_y))
+    return message
