@@ -77,7 +77,7 @@ def test_buildings_are_served(serving, tmp_path, how):
     arguments = {
         "file": [file, "--set", "pedestrians=6"],
         "setting": ["floor_plan", "--set", f"plan={file}", "--set", "pedestrians=6"],
-        "model": ["office_tower", "--set", "people_per_storey=2"],
+        "model": ["office_tower", "--set", "pedestrians=12"],
     }
     process = serving(*arguments[how], "--seed", 1)
     with connect(process.stdout.readline().strip()) as client:
