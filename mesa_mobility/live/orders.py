@@ -136,6 +136,7 @@ class Orders(Saved):
         end_wait(rows[self.does[rows] == STANDS], model.frame, model.crowd)
         for row in rows.tolist():
             model.journeys.stays.end(row, model.frame, model.crowd)
+        model.refuges.free(rows, model.crowd)
         # Progress on the way to another place is no progress on this one, nor is its lack.
         agenda["nearest"][rows], agenda["since"][rows] = np.inf, model.elapsed
         self.does[rows] = what

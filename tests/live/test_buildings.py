@@ -159,18 +159,31 @@ def test_who_is_sent_to_a_place_goes_to_no_refuge():
     for level in (0, 1):
         do(run, "close", opening=f"lift at level {level}")
     person = added(run, [12.0, 4.0], 1)
-    do(run, "walk", person=person, to=[8.0, 4.0], level=1)
-    place = on_the_way(run, person, 20)[-1]
-    assert math.dist(place[:3], (8.0, 4.0, RISE)) < 0.5
-    do(run, "walk", person=person, to=[8.0, 4.0], level=0)
-    for _ in range(30):
+    for _ in range(300):
         run.step()
-    assert math.dist(here(run, person)[:3], place[:3]) < 0.2
+    assert run.model.in_refuges["north lobby"] == [person]
+    do(run, "walk", person=person, to=[8.0, 4.0], level=1)
+    assert math.dist(on_the_way(run, person, 20)[-1][:3], (8.0, 4.0, RISE)) < 0.5
+    assert run.model.in_refuges["north lobby"] == []
     do(run, "release", person=person)
-    for _ in range(100):
+    for _ in range(150):
         run.step()
     # The refuge begins at x = 15.
-    assert here(run, person)[0] > 11.0
+    assert here(run, person)[0] > 14.0
+
+
+def test_who_has_no_way_waits_for_one_even_in_a_refuge():
+    run = run_of(with_refuge_and_lift(), WHEELCHAIR)
+    for level in (0, 1):
+        do(run, "close", opening=f"lift at level {level}")
+    person = added(run, [17.0, 2.5], 1)
+    do(run, "walk", person=person, to=[20.0, 3.0], level=0)
+    for _ in range(300):
+        run.step()
+    assert math.dist(here(run, person)[:3], (17.0, 2.5, RISE)) < 0.2
+    for level in (0, 1):
+        do(run, "open", opening=f"lift at level {level}")
+    assert math.dist(on_the_way(run, person, 60)[-1][:3], (20.0, 3.0, 0.0)) < 0.5
 
 
 @pytest.mark.parametrize(
