@@ -68,7 +68,9 @@ def serve(
         if not is_compiled():
             say(COMPILING)
         with compiling_ahead():
-            simulation, _ = create_model(find_model(model), model, options, **doors.keywords())
+            simulation, _ = create_model(
+                find_model(model), model, options, buildings=True, **doors.keywords()
+            )
             if not isinstance(simulation, PedestrianModel):
                 raise ModelError(f"model {model}: expected a subclass of PedestrianModel")
             run = Run(simulation, rate)

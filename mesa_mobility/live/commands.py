@@ -8,9 +8,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility.errors import LiveError
+from mesa_mobility.errors import LiveError, MobilityError
 from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.live.fields import Fields, shown, text_of
+from mesa_mobility.live.levels import in_plane, in_true_places
 from mesa_mobility.live.run import Command, Run
 
 Reader: TypeAlias = Callable[[Fields, Hashable], Command]
@@ -61,10 +62,11 @@ class Refused(LiveError):
 
 def _walk(fields: Fields, client: Hashable) -> Command:
     people, place = fields.people(), fields.pair("to")
-    stay = fields.number("stay", None)
+    level, stay = fields.level(), fields.number("stay", None)
 
     def command(run: Run) -> dict[str, Any]:
-        run.orders.walk(_inside(run, people), place, stay)
+        [[x, y]] = in_plane(run.model, "to", [place], level).tolist()
+        run.orders.walk(_inside(run, people), (x, y), stay)
         return {}
 
     return command
@@ -134,19 +136,23 @@ def _changing(change: Callable[[FloorPlan, str], None]) -> Reader:
 def _add(fields: Fields, client: Hashable) -> Command:
     positions, exits = fields.pairs("positions"), _exits(fields)
     speed, kind = fields.number("speed", None), fields.text("type", None)
-    heading = fields.number("heading", None)
+    heading, level = fields.number("heading", None), fields.level()
 
     def command(run: Run) -> dict[str, Any]:
         types = [each.name for each in run.model.pedestrian_types]
         if kind is not None and kind not in types:
             raise LiveError(f"type: got {shown(kind)}, expected one of {', '.join(types)}")
-        people = run.model.add_pedestrians(
-            positions,
-            headings=None if heading is None else [heading] * len(positions),
-            preferred_speeds=None if speed is None else [speed] * len(positions),
-            exits=exits,
-            type_index=None if kind is None else types.index(kind),
-        )
+        points = in_plane(run.model, "positions", positions, level)
+        try:
+            people = run.model.add_pedestrians(
+                points,
+                headings=None if heading is None else [heading] * len(positions),
+                preferred_speeds=None if speed is None else [speed] * len(positions),
+                exits=exits,
+                type_index=None if kind is None else types.index(kind),
+            )
+        except MobilityError as error:
+            raise LiveError(in_true_places(str(error), points, positions)) from error
         return {"people": [person.row for person in people]}
 
     return command

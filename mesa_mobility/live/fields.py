@@ -76,6 +76,13 @@ class Fields:
         value = self.take(name, default)
         return value if value is default else text_of(name, value)
 
+    def level(self) -> int | None:
+        """The number of a level; None where there is no such field."""
+        value = self.take("level", None)
+        if value is not None and (not isinstance(value, int) or isinstance(value, bool)):
+            _refuse("level", value, "the number of a level")
+        return value
+
     def people(self) -> list[int]:
         """Numbers of one or more people: the field ``person``, or ``people`` for several."""
         if "person" in self._values:

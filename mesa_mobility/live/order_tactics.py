@@ -11,13 +11,15 @@ from numpy.typing import NDArray
 from mesa_mobility.crowd.hooks import World
 from mesa_mobility.crowd.pedestrian_model import PedestrianModel
 from mesa_mobility.crowd.state.clearances import clearance_of
+from mesa_mobility.crowd.state.environment import Environment
 from mesa_mobility.crowd.state.records import Crowd
 from mesa_mobility.crowd.tactics.deciding import Deciding, Desired
 from mesa_mobility.crowd.tactics.tactic import Tactic
 from mesa_mobility.crowd.tactics.visits import StayAtPlaces
+from mesa_mobility.floorplan import Targets
 from mesa_mobility.live.making_way import BRISK, step_aside
 from mesa_mobility.live.orders import FREE, STANDS, STEERED, WALKS, Orders
-from mesa_mobility.live.point_routes import PointRoutes
+from mesa_mobility.live.point_routes import Aims, PointRoutes
 from mesa_mobility.schema import Kind
 
 AHEAD = 1.0
@@ -91,31 +93,68 @@ class WalkToPlaces(_OfOrders):
         super().__init__(orders)
         self._routes: dict[int, PointRoutes] = {}
 
+    def bind(self, model: World) -> None:
+        """Keep the model's crowd, share its orders, and have lifts heed them."""
+        super().bind(model)
+        model.lifts.sent = self._go_on
+
     def apply(self, deciding: Deciding, desired: Desired) -> None:
         """Set the points of those who are on the way."""
-        orders, rows, site = self.orders, deciding.pedestrians, deciding.site
+        orders, rows = self.orders, deciding.pedestrians
         assert orders is not None
         does = orders.of(rows)
         if desired.newcomers or not does.any():
             return
         # Their wait is over.
-        over = rows[(does == STANDS) & ~deciding.waiting]
-        orders.does[over] = FREE
+        over = (does == STANDS) & ~deciding.waiting
+        orders.does[rows[over]] = does[over] = FREE
+        desired.ordered = (does == WALKS) | (does == STANDS)
         going = np.flatnonzero(does == WALKS)
+        own = rows[going]
+        aims = self._aims(own, deciding.positions[going], deciding.site)
         points, speeds = desired.points.copy(), desired.speeds.copy()
-        bodies = np.array([site.body(int(kind)) for kind in deciding.types[going]])
-        for at in _by_destination(orders.place[rows[going]], bodies):
-            own, body = going[at], int(bodies[at[0]])
+        points[going], self._crowd.route[own] = aims.points, aims.lengths
+        speeds[going[~np.isfinite(aims.lengths)]] = 0.0
+        for at in _alike(orders.place[own]):
+            x, y = orders.place[own[at[0]]].tolist()
+            near = ARRIVED + AROUND * np.sqrt(orders.standing_at((x, y)))
+            orders.arrive(own[at[aims.lengths[at] <= near]])
+        desired.points, desired.speeds = points, speeds
+        desired.targets = _with_aims(desired.targets, going, aims)
+
+    def _aims(
+        self, rows: NDArray[np.int64], positions: NDArray[np.float64], site: Environment
+    ) -> Aims:
+        """How people on the way to their places go on from (n, 2) positions, metres."""
+        assert self.orders is not None
+        places, kinds = self.orders.place[rows], self._crowd.type_index[rows].tolist()
+        bodies = np.array([site.body(kind) for kind in kinds], dtype=np.int64)
+        found = Aims(positions.copy(), np.full(len(rows), -1), np.full(len(rows), np.inf))
+        for own in _alike(np.column_stack([places, bodies])):
+            body, (x, y) = int(bodies[own[0]]), places[own[0]].tolist()
             if body not in self._routes:
                 clearance = clearance_of(site.core_radius(body))
-                self._routes[body] = PointRoutes(site.plan, clearance)
-            x, y = orders.place[rows[own[0]]].tolist()
-            points[own], lengths = self._routes[body].targets(deciding.positions[own], (x, y))
-            self._crowd.route[rows[own]] = lengths
-            speeds[own[~np.isfinite(lengths)]] = 0.0
-            near = ARRIVED + AROUND * np.sqrt(orders.standing_at((x, y)))
-            orders.arrive(rows[own[lengths <= near]])
-        desired.points, desired.speeds = points, speeds
+                self._routes[body] = PointRoutes(site.plan, clearance, climbs=site.climbs(body))
+            aims = self._routes[body].targets(positions[own], (x, y))
+            for values, theirs in zip(found, aims, strict=True):
+                values[own] = theirs
+        return found
+
+    def _go_on(
+        self,
+        site: Environment,
+        rows: NDArray[np.int64],
+        points: NDArray[np.float64],
+        gates: NDArray[np.int64],
+        lengths: NDArray[np.float64],
+    ) -> None:
+        """Write the ways of people with orders; see ``Lifts.sent``."""
+        assert self.orders is not None
+        does = self.orders.of(rows)
+        stands, walks = does == STANDS, does == WALKS
+        gates[stands], lengths[stands] = -1, np.inf
+        aims = self._aims(rows[walks], points[walks], site)
+        gates[walks], lengths[walks] = aims.gates, aims.lengths
 
 
 class Steering(_OfOrders):
@@ -142,12 +181,22 @@ class Steering(_OfOrders):
         desired.points, desired.speeds = points, speeds
 
 
-def _by_destination(
-    places: NDArray[np.float64], bodies: NDArray[np.int64]
-) -> list[NDArray[np.intp]]:
-    """Indices of those with the same place and size, for each such pair."""
-    if not len(places):
+def _with_aims(targets: Targets, who: NDArray[np.intp], aims: Aims) -> Targets:
+    """Targets of which those of some, ``who``, are other aims."""
+    points, gates = np.array(targets.points), np.array(targets.gates)
+    distances = np.array(targets.distances)
+    points[who], gates[who], distances[who] = aims.points, aims.gates, aims.lengths
+    corners = targets.corners
+    if corners is not None:
+        corners = np.array(corners)
+        corners[who] = -1
+    return Targets(points, gates, distances, corners, targets.floor)
+
+
+def _alike(values: NDArray[np.float64]) -> list[NDArray[np.intp]]:
+    """Indices of the (n, k) values, those of equal ones together."""
+    if not len(values):
         return []
-    _, which = np.unique(np.column_stack([places, bodies]), axis=0, return_inverse=True)
+    _, which = np.unique(values, axis=0, return_inverse=True)
     which = which.reshape(-1)
     return [np.flatnonzero(which == k) for k in range(int(which.max()) + 1)]

@@ -37,7 +37,7 @@ class Orders(Saved):
     Attributes:
         does: (n,) one of the four values above.
         velocity: (n, 2) of those who are steered, m/s.
-        place: (n, 2) to which people walk, metres.
+        place: (n, 2) to which people walk, metres, in the plane of the model.
         stay: (n,) frames for which they stay there, or ``FOREVER``.
     """
 
@@ -84,7 +84,7 @@ class Orders(Saved):
 
         Args:
             rows: (n,) the people.
-            place: metres.
+            place: metres, in the plane of the model; see ``Building.places``.
             stay: seconds, or None for as long as nobody tells them otherwise.
 
         Raises:
@@ -94,8 +94,8 @@ class Orders(Saved):
         plan, room = model.floor_plan, passing_of(float(model.crowd.core[rows].max()))
         if not plan.contains(point)[0] or distances_to_walls(plan, point, room)[0] < room:
             raise LiveError(
-                f"to: ({place[0]:g}, {place[1]:g}) is off the floor or nearer than {room:.2f} m to "
-                "a wall, expected a place with room for the body"
+                f"to: the place is off the floor or nearer than {room:.2f} m to a wall, expected "
+                "a place with room for the body"
             )
         frames = FOREVER if stay is None else int(frames_of(np.array([stay]), "stay")[0])
         self._begin(rows, WALKS)
@@ -136,6 +136,7 @@ class Orders(Saved):
         end_wait(rows[self.does[rows] == STANDS], model.frame, model.crowd)
         for row in rows.tolist():
             model.journeys.stays.end(row, model.frame, model.crowd)
+        model.refuges.free(rows, model.crowd)
         # Progress on the way to another place is no progress on this one, nor is its lack.
         agenda["nearest"][rows], agenda["since"][rows] = np.inf, model.elapsed
         self.does[rows] = what

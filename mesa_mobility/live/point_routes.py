@@ -32,19 +32,36 @@ KEPT = 1000
 class _Nodes(NamedTuple):
     """Places where routes bend.
 
-    Two nodes in view of each other are joined by a line.
+    Lines lead both ways between nodes in view of each other, and from sheet to sheet of a building
+    as people walk or ride.
 
     Attributes:
         xy: (n, 2) metres.
+        gate: (n,) number of the gate at which each is, in ``FloorPlan.openings()``; -1 for corners.
         start: (m,) first node of each line.
         end: (m,) last node of each line.
-        length: (m,) of each line, metres.
+        length: (m,) as which each line counts, metres.
     """
 
     xy: NDArray[np.float64]
+    gate: NDArray[np.int64]
     start: NDArray[np.int64]
     end: NDArray[np.int64]
     length: NDArray[np.float64]
+
+
+class Aims(NamedTuple):
+    """Where n people aim who go to a place.
+
+    Attributes:
+        points: (n, 2) metres; a person without a way gets their own position.
+        gates: (n,) the gate aimed through, as its number in ``FloorPlan.openings()``; -1 for none.
+        lengths: (n,) of the routes, metres; inf where there is none.
+    """
+
+    points: NDArray[np.float64]
+    gates: NDArray[np.int64]
+    lengths: NDArray[np.float64]
 
 
 class PointRoutes:
@@ -53,41 +70,37 @@ class PointRoutes:
     Args:
         plan: the floor plan.
         clearance: distance that routes keep from walls, metres.
+        climbs: whether routes are for people who use stairs; see ``Router``.
     """
 
-    def __init__(self, plan: FloorPlan, clearance: float) -> None:
+    def __init__(self, plan: FloorPlan, clearance: float, *, climbs: bool = True) -> None:
         self._plan = plan
-        self._clearance = clearance
+        self._clearance, self._climbs = clearance, climbs
         self._version = -1
         self._nodes: _Nodes
         self._lengths: dict[tuple[float, float], NDArray[np.float64]] = {}
 
-    def targets(
-        self, positions: NDArray[np.float64], place: tuple[float, float]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def targets(self, positions: NDArray[np.float64], place: tuple[float, float]) -> Aims:
         """Where people aim who go to a place.
 
         Args:
             positions: (n, 2) metres.
             place: metres.
-
-        Returns:
-            (n, 2) targets, metres, and (n,) lengths of the routes, metres. Somebody without a way
-            gets their own position, and inf.
         """
         to_go = self._lengths_to(place)
         points, lengths = positions.copy(), np.full(len(positions), np.inf)
+        gates = np.full(len(positions), -1)
         direct = self._sees(positions, np.broadcast_to(place, positions.shape))
         points[direct] = place
         lengths[direct] = _away(positions[direct], np.array(place))
         for k in np.flatnonzero(~direct).tolist():
-            points[k], lengths[k] = self._by_node(positions[k], to_go)
-        return points, lengths
+            points[k], gates[k], lengths[k] = self._by_node(positions[k], to_go)
+        return Aims(points, gates, lengths)
 
     def _by_node(
         self, position: NDArray[np.float64], to_go: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], float]:
-        """Target and length of a route that bends."""
+    ) -> tuple[NDArray[np.float64], int, float]:
+        """Target, gate and length of a route that bends."""
         xy = self._nodes.xy
         usable = np.flatnonzero(np.isfinite(to_go))
         through = _away(xy[usable], position) + to_go[usable]
@@ -97,8 +110,9 @@ class PointRoutes:
             seen = lines_of_sight(self._plan, start, xy[order], clearance)
             if seen.any():
                 node = int(order[np.argmax(seen)])
-                return self._past(position, node), float(through[usable == node][0])
-        return position, np.inf
+                gate, length = int(self._nodes.gate[node]), float(through[usable == node][0])
+                return self._past(position, node), gate, length
+        return position, -1, np.inf
 
     def _past(self, position: NDArray[np.float64], node: int) -> NDArray[np.float64]:
         """A target past a corner or gate; at the corner itself people would slow down."""
@@ -122,32 +136,43 @@ class PointRoutes:
         return self._lengths[place]
 
     def _search(self, place: tuple[float, float]) -> NDArray[np.float64]:
-        xy, start, end, length = self._nodes
+        xy, _, start, end, length = self._nodes
         if len(xy) == 0:
             return np.empty(0)
         last = np.flatnonzero(self._sees(xy, np.broadcast_to(place, xy.shape)))
         lines = np.maximum(_away(xy[last], np.array(place)), 1e-9)
         # The place is one more node, from which all routes are followed.
         n = len(xy)
-        begin, to = np.concatenate([start, np.full(len(last), n)]), np.concatenate([end, last])
+        begin, to = np.concatenate([end, np.full(len(last), n)]), np.concatenate([start, last])
         joined = csr_matrix((np.concatenate([length, lines]), (begin, to)), shape=(n + 1, n + 1))
-        found: NDArray[np.float64] = dijkstra(joined, directed=False, indices=n)[:n]
+        found: NDArray[np.float64] = dijkstra(joined, indices=n)[:n]
         return found
 
     def _look_up(self) -> _Nodes:
         """The nodes but exits, by which nobody is to leave on the way."""
-        graph = Router(self._plan, clearance=self._clearance).graph
+        plan = self._plan
+        graph = Router(plan, clearance=self._clearance, climbs=self._climbs).graph
         kept = [node for node, kind in graph.nodes(data="kind") if kind != "exit"]
         at = {node: k for k, node in enumerate(kept)}
         xy = np.array([graph.nodes[n]["position"] for n in kept]).reshape(-1, 2)
-        # A gate's nodes lead one way each; together they are crossed both ways. Lines in both
-        # directions are one.
-        edges = {
-            (min(at[a], at[b]), max(at[a], at[b])) for a, b in graph.edges if a in at and b in at
-        }
-        start, end = np.array(sorted(edges), dtype=np.int64).reshape(-1, 2).T
-        length = np.hypot(*(xy[end] - xy[start]).T)
-        return _Nodes(xy, start, end, np.maximum(length, 1e-9))
+        names = [graph.nodes[n]["opening"] for n in kept]
+        numbers = {opening.name: number for number, opening in enumerate(plan.openings())}
+        gates = np.array([numbers.get(name, -1) for name in names], dtype=np.int64)
+        links = [link for seam in plan.seams for link in seam.links]
+        links += [link for shaft in plan.shafts for link in shaft.links]
+        across = {(link.leaving, link.arriving) for link in links}
+        # A gate's nodes lead one way each; together they are crossed both ways.
+        lengths: dict[tuple[int, int], float] = {}
+        for one, other, length in graph.edges(data="weight"):
+            if one in at and other in at:
+                a, b = at[one], at[other]
+                lengths[a, b] = length
+                if (names[a], names[b]) not in across:
+                    lengths[b, a] = length
+        edges = sorted(lengths)
+        start, end = np.array(edges, dtype=np.int64).reshape(-1, 2).T
+        length = np.array([lengths[edge] for edge in edges], dtype=np.float64)
+        return _Nodes(xy, gates, start, end, np.maximum(length, 1e-9))
 
     def _sees(self, one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.bool_]:
         return lines_of_sight(self._plan, one, other, VIEW_SHARE * self._clearance)

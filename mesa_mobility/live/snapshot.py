@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility.crowd import PedestrianModel
 from mesa_mobility.live.frames import Frame
+from mesa_mobility.live.levels import where
 
 PROTOCOL = 1
 
@@ -49,7 +50,7 @@ class Snapshot:
         frame: where everybody is.
         people: everybody who has ever been there.
         types: names of the pedestrian types.
-        plan: the floor plan as GeoJSON.
+        plan: the floor plan, or the building, as GeoJSON.
         plan_version: changes with the plan.
         model: name of the model's class.
         rate: frames published in a simulated second.
@@ -132,7 +133,8 @@ class Camera:
             self._people = People(crowd.type_index[:count].copy(), crowd.core[:count].copy())
         if self._plan_version != model.floor_plan.version:
             self._plan_version = model.floor_plan.version
-            self._plan = _json(model.floor_plan.to_geojson())
+            self._plan = _json((model.building or model.floor_plan).to_geojson())
+        here = where(model, rows)
         self._number += 1
         frame = Frame(
             self._number,
@@ -140,11 +142,13 @@ class Camera:
             time.time(),
             paused,
             rows.astype(np.int32),
-            crowd.x[rows],
-            crowd.y[rows],
+            here.x,
+            here.y,
             crowd.heading[rows],
             crowd.vx[rows],
             crowd.vy[rows],
+            here.z,
+            here.level,
         )
         return Snapshot(
             frame,

@@ -15,6 +15,7 @@ from websockets.sync.client import connect
 
 from mesa_mobility.commands import serve
 from mesa_mobility.live.frames import read_frame
+from tests.fixtures.buildings import two_storeys
 
 
 @pytest.fixture
@@ -66,6 +67,33 @@ def test_a_model_in_a_file_is_served(serving, tmp_path):
         frames = [read_frame(client.recv(timeout=60)) for _ in range(5)]
     # Nobody is inside, and time goes by all the same.
     assert frames[-1].frame > frames[0].frame
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("how", ["file", "setting", "model"])
+def test_buildings_are_served(serving, tmp_path, how):
+    building, file = two_storeys(), tmp_path / "office.geojson"
+    building.write_geojson(file)
+    arguments = {
+        "file": [file, "--set", "pedestrians=6"],
+        "setting": ["floor_plan", "--set", f"plan={file}", "--set", "pedestrians=6"],
+        "model": ["office_tower", "--set", "pedestrians=12"],
+    }
+    process = serving(*arguments[how], "--seed", 1)
+    with connect(process.stdout.readline().strip()) as client:
+        plan = json.loads(client.recv(timeout=60))["plan"]
+        frame = read_frame(client.recv(timeout=60))
+    assert {"walkable", "stairs", "exit"} <= {
+        each["properties"]["kind"] for each in plan["features"]
+    }
+    elevations = {
+        each["properties"]["level"]: each["properties"]["elevation"]
+        for each in plan["features"]
+        if each["properties"]["kind"] == "walkable"
+    }
+    # Nobody has got far, and nobody begins on stairs.
+    assert len(frame) > 0
+    assert frame.z.tolist() == [elevations[level] for level in frame.level.tolist()]
 
 
 @pytest.mark.parametrize(

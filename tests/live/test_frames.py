@@ -32,6 +32,8 @@ AS_JSON = {
 def frames(draw):
     n = draw(st.integers(0, 20))
     columns = [draw(arrays.arrays(np.float64, n, elements=FINITE)) for _ in COLUMNS]
+    z = draw(st.none() | arrays.arrays(np.float64, n, elements=FINITE))
+    level = None if z is None else draw(arrays.arrays(np.int16, n))
     person = draw(arrays.arrays(np.int32, n, elements=st.integers(0, 2**31 - 1)))
     return Frame(
         draw(st.integers(0, 2**64 - 1)),
@@ -40,6 +42,8 @@ def frames(draw):
         draw(st.booleans()),
         person,
         *columns,
+        z,
+        level,
     )
 
 
@@ -52,6 +56,10 @@ def test_either_form_is_read_back_to_the_last_bit(frame, binary):
     np.testing.assert_array_equal(again.person, frame.person)
     for name in COLUMNS:
         assert getattr(again, name).tobytes() == getattr(frame, name).tobytes()
+    assert (again.z is None) == (again.level is None) == (frame.z is None)
+    if frame.z is not None:
+        assert again.z.tobytes() == frame.z.tobytes()
+        assert again.level.tolist() == frame.level.tolist()
 
 
 def test_the_binary_form_is_the_documented_one():
@@ -91,6 +99,19 @@ def test_the_binary_form_is_the_documented_one():
     assert len(expected) == 32 + 44 * 2
 
 
+def test_in_a_building_height_and_level_follow_the_rest():
+    one = [np.array([value]) for value in (0.1, 0.2, 0.3, 0.4, 0.5)]
+    person, z, level = np.array([7], dtype=np.int32), np.array([1.5]), np.array([-2], np.int16)
+    plain = Frame(1, 2, 3.0, False, person, *one)
+    frame = Frame(1, 2, 3.0, False, person, *one, z, level)
+    expected, before = frame.to_bytes(), plain.to_bytes()
+    # Bit 1 of the flags, then all as on a floor plan, then 1.5 and -2.
+    assert expected[:6] + expected[8:-10] == before[:6] + before[8:]
+    assert expected[6:8] == b"\2\0"
+    assert expected[-10:] == bytes.fromhex("000000000000f83ffeff")
+    assert json.loads(frame.to_json()) == AS_JSON | {"z": [1.5], "level": [-2]}
+
+
 def test_the_json_form_has_a_list_for_each_column():
     one = [np.array([value]) for value in (0.1, 0.2, 0.3, 0.4, 0.5)]
     frame = Frame(1, 2, 3.0, False, np.array([7], dtype=np.int32), *one)
@@ -121,6 +142,9 @@ def test_a_frame_that_is_cut_or_longer_is_refused(frame, data):
         ({"person": [2**40]}, "not readable"),
         ({"vy": None}, "unequal length"),
         ({"y": ["north"]}, "not readable"),
+        ({"z": [1.0]}, "not readable: KeyError 'level'"),
+        ({"z": [1.0], "level": []}, "unequal length"),
+        ({"z": [1.0], "level": [2**15]}, "not readable"),
     ],
 )
 def test_a_json_frame_with_other_values_is_refused(changes, message):

@@ -24,8 +24,8 @@ def walled():
 
 
 def from_one(routes, start, place):
-    points, lengths = routes.targets(np.array([start], dtype=float), place)
-    return points[0].tolist(), float(lengths[0])
+    aims = routes.targets(np.array([start], dtype=float), place)
+    return aims.points[0].tolist(), float(aims.lengths[0])
 
 
 def test_the_way_round_a_wall_is_by_its_corners():

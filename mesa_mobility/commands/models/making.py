@@ -184,7 +184,7 @@ def create_model(
     if not buildings and getattr(model, "building", None) is not None:
         raise ModelError(
             f"model {name}: has a building of {len(model.building.levels)} levels, expected one "
-            "floor plan (`mesa-mobility run` and Python run buildings)"
+            "floor plan (`mesa-mobility run`, `serve` and Python run buildings)"
         )
     if recorded_later:
         model.start_recording(record)

@@ -51,11 +51,15 @@ class Lifts(Saved):
         trips: (lifts,) how often each has gone from one stop to another.
         carried: (lifts,) people whom each has carried.
         log: the rides with people, which tells how high they were.
+        sent: takes the environment, people, where they would be, and their gates and lengths as
+            ``ways`` returns them. It writes these of people who are sent elsewhere than to their
+            destination. None if nobody is.
     """
 
     def __init__(self, shafts: tuple[Shaft, ...], environment: Environment) -> None:
         self.shafts, self.log = shafts, Rides(shafts, EVERY)
         self._environment = environment
+        self.sent: Callable[..., None] | None = None
         self._doors = [[gate.name for gate in each.gates] for each in shafts]
         count = len(shafts)
         self.at, self.trips, self.carried, self._open, self._since = np.zeros((5, count), np.int64)
@@ -138,6 +142,29 @@ class Lifts(Saved):
             for stop in range(len(shaft.stops)):
                 found[shaft.in_car(stop, points)] = number
         return found
+
+    def ways(
+        self,
+        rows: NDArray[np.int64],
+        points: NDArray[np.float64],
+        destinations: NDArray[np.int64],
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """How people would go on from elsewhere.
+
+        Args:
+            rows: (n,) the people.
+            points: (n, 2) where each would be, metres.
+            destinations: (n,) of each.
+
+        Returns:
+            (n,) the gate or exit through which each would aim, as ``Targets`` have it, and the (n,)
+            lengths of their routes, metres.
+        """
+        found = self._environment.targets(points, destinations)
+        gates, lengths = np.array(found.gates), np.array(found.distances)
+        if self.sent is not None:
+            self.sent(self._environment, rows, points, gates, lengths)
+        return gates, lengths
 
     def shut_in(
         self, rows: NDArray[np.int64], crowd: Crowd, is_open: Callable[[str], bool]
@@ -290,7 +317,7 @@ class Lifts(Saved):
         count = len(shaft.stops)
         doors = np.array([shaft.before_door(k) for k in range(count)])
         destinations = crowd.destination[[row]].astype(np.int64).repeat(count)
-        lengths = self._environment.targets(doors, destinations).distances
+        _, lengths = self.ways(np.full(count, row), doors, destinations)
         ways = [lengths[k] + shaft.ride_length(stop, k) for k in range(count)]
         # The way from this stop leads through the lift as well, and is as long as that by the best.
         ways[stop] = np.inf

@@ -130,10 +130,16 @@ class Refuges(Saved):
         are to go where they wanted to go before."""
         if not self.refuges:
             return
-        free = rows[(self.bound_for(rows, crowd) != NOWHERE) & ~self._there[rows]]
-        crowd.destination[free] = self._meant[free]
-        self._number[free], self._until[free] = NOWHERE, NOWHERE
+        self._make_room(rows)
+        self.free(rows[~self._there[rows]], crowd)
         self._survey()
+
+    def free(self, rows: NDArray[np.int64], crowd: Crowd) -> None:
+        """Let those in ``rows`` who are bound for a refuge, or wait there, go where they wanted to
+        go before."""
+        bound = rows[self.bound_for(rows, crowd) != NOWHERE]
+        crowd.destination[bound] = self._meant[bound]
+        self._number[bound], self._until[bound] = NOWHERE, NOWHERE
 
     def send(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.bool_]:
         """Send those in ``rows`` who are cut off to the nearest refuge to which they have a way.

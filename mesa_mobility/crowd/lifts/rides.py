@@ -33,6 +33,9 @@ class Rides(Saved):
 
     def __init__(self, shafts: tuple[Shaft, ...], every: int) -> None:
         self._shafts, self._every = shafts, every
+        rides = [(each, a, b) for each in shafts for a in range(len(each.stops)) for b in range(a)]
+        longest = max((shaft.ride_s(a, b) for shaft, a, b in rides), default=0.0)
+        self._longest = round(longest * FRAMES_A_SECOND) + every
         self.begun: NDArray[np.int64] = np.empty((0, 4), np.int64)
 
     def members(self) -> Mapping[str, Kind]:
@@ -71,7 +74,10 @@ class Rides(Saved):
             (n,) metres; below 0 downwards, and 0 for those who do not ride.
         """
         found = np.zeros(len(points))
-        for lift, start, end, begun in self.begun.tolist():
+        # While a model runs, all but the last rides are over.
+        first = int(frames[0]) - self._longest if len(frames) else 0
+        since = int(np.searchsorted(self.begun[:, 3], first))
+        for lift, start, end, begun in self.begun[since:].tolist():
             shaft = self._shafts[lift]
             rise = shaft.stops[end].elevation - shaft.stops[start].elevation
             arrived = begun + round(shaft.ride_s(start, end) * FRAMES_A_SECOND)

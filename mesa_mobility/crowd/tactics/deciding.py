@@ -24,15 +24,18 @@ class Desired:
     Attributes:
         points: (n, 2) where each wants to go, metres; at first their target.
         speeds: (n,) how fast, m/s; at first their unhindered preferred speed.
-        targets: what the target choice has given.
+        targets: what the target choice has given; for those who are sent to a place, the way there.
         newcomers: whether the pedestrians have only just been put on the floor, and get a target
             to face even if they are to wait.
+        ordered: (n,) whether each has been told where to be, and looks for no refuge; None if
+            nobody has.
     """
 
     points: NDArray[np.float64]
     speeds: NDArray[np.float64]
     targets: Targets
     newcomers: bool = False
+    ordered: NDArray[np.bool_] | None = None
 
     def stand(self, who: NDArray[Any], positions: NDArray[np.float64]) -> None:
         """Let some stand where they are with their next movement.

@@ -66,23 +66,28 @@ class RideLifts(Tactic):
 
     def _seek_refuge(self, deciding: Deciding, desired: Desired) -> None:
         """Send those without a way out to a refuge, and have them wait there."""
-        rows, crowd = deciding.pedestrians, deciding.inside.crowd
-        sent = self._refuges.send(rows, crowd)
-        if sent.any():
+        crowd, own = deciding.inside.crowd, np.arange(len(deciding.pedestrians))
+        if desired.ordered is not None:
+            own = own[~desired.ordered]
+        rows = deciding.pedestrians[own]
+        sent = own[self._refuges.send(rows, crowd)]
+        if len(sent):
             there = deciding.site.targets(
-                deciding.positions[sent], crowd.destination[rows[sent]].astype(np.int64)
+                deciding.positions[sent],
+                crowd.destination[deciding.pedestrians[sent]].astype(np.int64),
             )
             desired.points = desired.points.copy()
             desired.points[sent] = there.points
         inside, frame = deciding.inside.pedestrians, deciding.frame
-        who, spots = self._refuges.spots(rows, inside, frame, crowd)
+        found, spots = self._refuges.spots(rows, inside, frame, crowd)
+        who = own[found]
         if len(who):
             left = np.hypot(*(spots - deciding.positions[who]).T)
             desired.points, desired.speeds = desired.points.copy(), desired.speeds.copy()
             desired.points[who] = spots
             desired.speeds[who] = slow_down(desired.speeds[who], left)
-        arrived = self._refuges.arrived(rows, inside, frame, crowd)
-        if arrived.any():
+        arrived = own[self._refuges.arrived(rows, inside, frame, crowd)]
+        if len(arrived):
             deciding.hold(desired, arrived)
 
     def _ride(self, deciding: Deciding, desired: Desired) -> None:
@@ -129,23 +134,25 @@ class RideLifts(Tactic):
     ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
         """(n,) number of the lift into which the route of each leads soon, or -1, (n,) of the stop
         there, and (n,) metres to the door."""
-        count = len(deciding.pedestrians)
+        count, lifts = len(deciding.pedestrians), self._lifts
         number, stop = np.full((2, count), NOBODY)
         away = np.full(count, np.inf)
-        for lift, shaft in enumerate(self._lifts.shafts):
+        for lift, shaft in enumerate(lifts.shafts):
             for k, opening in enumerate(self._doors[lift]):
                 to_door = np.hypot(*(deciding.positions - shaft.door(k)).T)
                 near = np.flatnonzero(who & (to_door < CALLS))
                 if not len(near):
                     continue
                 before = shaft.before_door(k)
-                there = deciding.site.targets(
-                    before[None].repeat(len(near), axis=0), deciding.destinations[near]
+                gates, lengths = lifts.ways(
+                    deciding.pedestrians[near],
+                    before[None].repeat(len(near), axis=0),
+                    deciding.destinations[near],
                 )
                 # From the door on, since some stand nearer to it than that place.
-                onward = there.distances - np.hypot(*(before - shaft.door(k)))
+                onward = lengths - np.hypot(*(before - shaft.door(k)))
                 way = to_door[near] + onward
-                by = (there.gates == opening) & (way < desired.targets.distances[near] + DETOUR)
+                by = (gates == opening) & (way < desired.targets.distances[near] + DETOUR)
                 number[near[by]], stop[near[by]], away[near[by]] = lift, k, to_door[near[by]]
         return number, stop, away
 
