@@ -26,10 +26,12 @@ from mesa_mobility.buildings.places import Places
 from mesa_mobility.buildings.plans import plan_of_level, plan_of_sheets
 from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.buildings.sheets import Sheet, sheets_of
+from mesa_mobility.buildings.ways import gates_of_way
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, Gate, Room
 from mesa_mobility.floorplan.floor.checks import read_polygon
 from mesa_mobility.floorplan.formats.geojson import label
+from mesa_mobility.plugins.registry import did_you_mean
 
 
 class Building:
@@ -202,6 +204,55 @@ class Building:
             name = self.stairs[self._owners[flight.name]].name
             found[name] = (*found.get(name, ()), *seam.gates)
         return found | {shaft.name: shaft.gates for shaft in self.floor_plan.shafts}
+
+    def close(self, name: str) -> None:
+        """Close the stairs, ramp, escalator or lift of this name: all of its gates become walls.
+
+        Raises:
+            FloorPlanError: no such name.
+        """
+        for gate in self._gates_of(name):
+            self.floor_plan.close_gate(gate.name)
+
+    def open(self, name: str) -> None:
+        """Open the stairs, ramp, escalator or lift of this name again; see `close`."""
+        for gate in self._gates_of(name):
+            self.floor_plan.open_gate(gate.name)
+
+    def is_open(self, name: str) -> bool:
+        """Whether all gates of the stairs, ramp, escalator or lift of this name are open."""
+        return all(self.floor_plan.is_open(gate.name) for gate in self._gates_of(name))
+
+    def way(self, names: Sequence[str], level: int, *, climbs: bool = True) -> tuple[str, ...]:
+        """Names of the gates of a way over stairs, ramps, escalators and lifts, for a route.
+
+        Stairs, ramps and escalators lead to their other level, and a lift to the level at which
+        what comes next begins. What does not begin at the level to which the way has come is left
+        out, and so is what these people do not use. Names of gates stay as they are.
+
+        Args:
+            names: in the order in which people take them.
+            level: number of the level where they are.
+            climbs: whether they use stairs (`PedestrianType.climbs`).
+
+        Raises:
+            FloorPlanError: no such name, or no such level.
+        """
+        known = {each.name for each in self.floor_plan.gates}
+        for name in names:
+            if name not in known:
+                self._gates_of(name)
+        joints = {each.name: each for each in (*self.stairs, *self.lifts)}
+        return gates_of_way(names, self.level(level).number, climbs, joints, self.gates)
+
+    def _gates_of(self, name: str) -> tuple[Gate, ...]:
+        gates = self.gates
+        if name not in gates:
+            raise FloorPlanError(
+                f"there are no stairs, ramp, escalator or lift {name!r}"
+                f"{did_you_mean(str(name), gates)}; there are {', '.join(map(repr, gates))}"
+            )
+        return gates[name]
 
     @cached_property
     def rooms(self) -> tuple[Room, ...]:
