@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from mesa_mobility.behaviors.exits.quickest_exit import people_a_second
+from mesa_mobility.behaviors.routes.flows import flows_through
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import dijkstra
 
 from mesa_mobility import FloorPlan
 from mesa_mobility.floorplan import lines_of_sight
@@ -28,16 +29,18 @@ _BEFORE = 0.01
 class Network:
     """Lengths between gates and exits, each gate once for either direction in which it is crossed.
 
+    Of a gate that is drawn on two sheets the drawing on its own sheet counts, and of the doors of
+    lifts the way in: where riders get out depends on where they go next.
+
     Args:
-        graph: the route graph of the plan as it is now.
+        graph: the routes of people with one kind of body, as the plan is now.
         plan: the floor plan.
 
     Attributes:
-        graph: the route graph.
-        names: (g,) of the gates and exits.
-        flows: (g,) people a second who pass each.
-        middles: (g, 2) their middles, metres.
-        number: (o,) which of these each opening is: a gate in one direction, or an exit.
+        graph: the routes.
+        number: (o,) the queue before each opening, a gate in one direction or an exit: its number
+            in ``FloorPlan.openings()``, and before all doors of a lift that of the first.
+        flows: (o,) people a second who pass each.
     """
 
     def __init__(self, graph: nx.DiGraph, plan: FloorPlan) -> None:
@@ -46,25 +49,27 @@ class Network:
         self.graph = graph
         self._plan = plan
         openings: dict[tuple[str, tuple[float, float]], list[int]] = {}
+        ways_in = {gate.name: shaft.into() for shaft in plan.shafts for gate in shaft.gates}
         for node, data in graph.nodes(data=True):
-            if data["opening"]:
-                openings.setdefault((data["opening"], data["direction"]), []).append(node)
-        self.names = list(dict.fromkeys(name for name, _ in openings))
-        known = [plan.gate(name) for name in self.names]
-        self.flows = people_a_second([each.length for each in known])
-        self.middles = np.array([np.add(each.a, each.b) / 2.0 for each in known]).reshape(-1, 2)
-        self.number = np.array([self.names.index(name) for name, _ in openings], dtype=np.int64)
+            name, direction = data["opening"], data["direction"]
+            if not name or plan.drawings(name)[0].name != name:
+                continue
+            if name not in ways_in or float(np.dot(ways_in[name], direction)) > 0.0:
+                openings.setdefault((name, direction), []).append(node)
+        self._names = [name for name, _ in openings]
+        numbers = queue_numbers(plan)
+        self.number = np.array([numbers[name] for name in self._names], dtype=np.int64)
+        self.flows = flows_through(plan, self._names, [way for _, way in openings])
         exits = {each.name for each in plan.exits}
-        self._leaves = np.array([name in exits for name, _ in openings], dtype=np.bool_)
+        self._leaves = np.array([name in exits for name in self._names], dtype=np.bool_)
         self._places = np.array([xy for _, xy in graph.nodes(data="position")]).reshape(-1, 2)
         self._ahead = np.array(
             [way or (0.0, 0.0) for _, way in graph.nodes(data="direction")]
         ).reshape(-1, 2)
         self._from_nodes = np.full((len(graph), len(openings)), np.inf)
-        backwards = graph.reverse(copy=False)
+        backwards = nx.to_scipy_sparse_array(graph, format="csr").T.tocsr()
         for number, nodes in enumerate(openings.values()):
-            for node, length in nx.multi_source_dijkstra_path_length(backwards, set(nodes)).items():
-                self._from_nodes[node, number] = length
+            self._from_nodes[:, number] = dijkstra(backwards, indices=nodes, min_only=True)
         self._lengths = np.array(
             [self._from_nodes[nodes].min(axis=0) for nodes in openings.values()]
         ).reshape(len(openings), len(openings))
@@ -94,19 +99,18 @@ class Network:
         return self._next_alone(found)
 
     def onward(
-        self, exits: Sequence[str], queues: list[list[float]], speed: float
+        self, exits: Sequence[str], queued: NDArray[np.int64], speed: float
     ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """(o,) seconds from each opening to the exits, and the opening after it, -1 for none.
 
         Args:
             exits: their names.
-            queues: for each gate and exit, as many numbers as people head for it.
+            queued: for each queue the number of people in it.
             speed: m/s.
         """
-        mine = np.array([self.names[number] in exits for number in self.number], dtype=np.bool_)
+        mine = np.array([name in exits for name in self._names], dtype=np.bool_)
         rest = np.where(mine, 0.0, np.inf)
-        waits = np.array([len(queue) for queue in queues]) / self.flows
-        steps = self._lengths / speed + waits[self.number]
+        steps = self._lengths / speed + queued[self.number] / self.flows
         following = np.full(len(rest), -1, dtype=np.int64)
         for _ in range(len(rest)):
             times = steps + rest
@@ -121,6 +125,16 @@ class Network:
         """Names of the gates of the way that begins with an opening."""
         gates = []
         while not self._leaves[first]:
-            gates.append(self.names[self.number[first]])
+            gates.append(self._names[first])
             first = int(following[first])
         return gates
+
+
+def queue_numbers(plan: FloorPlan) -> dict[str, int]:
+    """The number of the queue before each gate and exit, by its name.
+
+    The drawings of a gate have one queue, and so have all doors of a lift: one car serves them.
+    """
+    numbers = {opening.name: number for number, opening in enumerate(plan.openings())}
+    first = {gate.name: each.gates[0].name for each in plan.shafts for gate in each.gates}
+    return {name: numbers[first.get(name, plan.drawings(name)[0].name)] for name in numbers}
