@@ -85,18 +85,18 @@ class CongestionRouting(RouteChoice):
         nearest = [lengths.min(initial=np.inf) for lengths in distances]
         for k in np.argsort(nearest, kind="stable").tolist():
             network = networks[bodies[k]]
-            number, (rest, following) = network.number, onward[ends[k]]
+            number, on = network.number, onward[ends[k]]
             ahead = [
                 bisect(queues[queue], length)
                 for queue, length in zip(number.tolist(), distances[k].tolist(), strict=True)
             ]
-            times = distances[k] / speeds[k] + ahead / network.flows + rest
+            times = (distances[k] + on.metres) / speeds[k] + ahead / network.flows + on.seconds
             if not np.isfinite(times.min(initial=np.inf)):
                 continue
             best = int(times.argmin())
             before = times[number == heading[at[k]]].min(initial=np.inf)
             if new[k] or times[best] < (1.0 - self.patience) * before:
-                given[k] = network.way(best, following)
+                given[k] = network.way(best, on.following)
             else:
                 best = int(np.where(number == heading[at[k]], times, np.inf).argmin())
             insort(queues[number[best]], float(distances[k][best]))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from mesa_mobility.behaviors.routes.flows import flows_through
@@ -24,6 +24,20 @@ _CLEAR = 0.1
 
 # Metres by which somebody must stand before a gate to cross it.
 _BEFORE = 0.01
+
+
+class Onward(NamedTuple):
+    """The ways from o openings to some exits.
+
+    Attributes:
+        metres: (o,) their lengths; inf without a way.
+        seconds: (o,) for which people wait on them in queues.
+        following: (o,) the opening after each, -1 for none.
+    """
+
+    metres: NDArray[np.float64]
+    seconds: NDArray[np.float64]
+    following: NDArray[np.int64]
 
 
 class Network:
@@ -49,13 +63,17 @@ class Network:
         self.graph = graph
         self._plan = plan
         openings: dict[tuple[str, tuple[float, float]], list[int]] = {}
-        ways_in = {gate.name: shaft.into() for shaft in plan.shafts for gate in shaft.gates}
+        doors = {gate.name: shaft for shaft in plan.shafts for gate in shaft.gates}
+        inwards: list[int] = []
         for node, data in graph.nodes(data=True):
             name, direction = data["opening"], data["direction"]
             if not name or plan.drawings(name)[0].name != name:
                 continue
-            if name not in ways_in or float(np.dot(ways_in[name], direction)) > 0.0:
-                openings.setdefault((name, direction), []).append(node)
+            if name in doors:
+                if float(np.dot(doors[name].into(), direction)) < 0.0:
+                    continue
+                inwards.append(node)
+            openings.setdefault((name, direction), []).append(node)
         self._names = [name for name, _ in openings]
         numbers = queue_numbers(plan)
         self.number = np.array([numbers[name] for name in self._names], dtype=np.int64)
@@ -67,7 +85,15 @@ class Network:
             [way or (0.0, 0.0) for _, way in graph.nodes(data="direction")]
         ).reshape(-1, 2)
         self._from_nodes = np.full((len(graph), len(openings)), np.inf)
-        backwards = nx.to_scipy_sparse_array(graph, format="csr").T.tocsr()
+        # Nobody turns round in a car: from its door routes lead to other doors alone.
+        within = [
+            (node, other)
+            for node in inwards
+            for other in graph.successors(node)
+            if graph.nodes[other]["opening"] not in doors
+        ]
+        ways = nx.restricted_view(graph, [], within)
+        backwards = nx.to_scipy_sparse_array(ways, format="csr").T.tocsr()
         for number, nodes in enumerate(openings.values()):
             self._from_nodes[:, number] = dijkstra(backwards, indices=nodes, min_only=True)
         self._lengths = np.array(
@@ -76,6 +102,9 @@ class Network:
         np.fill_diagonal(self._lengths, np.inf)
         self._lengths[self._leaves] = np.inf
         self._lengths = self._next_alone(self._lengths)
+        # Nobody who has passed a gate goes straight back through it.
+        names = np.array(self._names)
+        self._onward = np.where(names[:, None] == names, np.inf, self._lengths)
 
     def _next_alone(self, lengths: NDArray[np.float64]) -> NDArray[np.float64]:
         """(n, o) the same lengths, but inf for openings behind another one on the way."""
@@ -98,19 +127,18 @@ class Network:
             found = np.minimum(found, first[:, node, None] + self._from_nodes[node])
         return self._next_alone(found)
 
-    def onward(
-        self, exits: Sequence[str], queued: NDArray[np.int64], speed: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """(o,) seconds from each opening to the exits, and the opening after it, -1 for none.
+    def onward(self, exits: Sequence[str], queued: NDArray[np.int64], speed: float) -> Onward:
+        """The quickest ways from each opening to the exits.
 
         Args:
             exits: their names.
             queued: for each queue the number of people in it.
-            speed: m/s.
+            speed: at which they are the quickest, m/s.
         """
         mine = np.array([name in exits for name in self._names], dtype=np.bool_)
         rest = np.where(mine, 0.0, np.inf)
-        steps = self._lengths / speed + queued[self.number] / self.flows
+        waits = queued[self.number] / self.flows
+        steps = self._onward / speed + waits
         following = np.full(len(rest), -1, dtype=np.int64)
         for _ in range(len(rest)):
             times = steps + rest
@@ -119,7 +147,13 @@ class Network:
                 break
             following[better] = times.argmin(axis=1)[better]
             rest = np.minimum(rest, times.min(axis=1))
-        return rest, following
+        metres, seconds = np.where(mine, 0.0, np.inf), np.where(mine, 0.0, np.inf)
+        for each in np.argsort(rest, kind="stable"):
+            after = following[each]
+            if after >= 0:
+                metres[each] = self._onward[each, after] + metres[after]
+                seconds[each] = waits[after] + seconds[after]
+        return Onward(metres, seconds, following)
 
     def way(self, first: int, following: NDArray[np.int64]) -> list[str]:
         """Names of the gates of the way that begins with an opening."""
