@@ -22,13 +22,13 @@ class FamiliarRoutes(RouteChoice):
     change the exits by which people may leave. For people who leave by the exit that they know, set
     their ``exits``, or use ``FamiliarExit`` instead of this behaviour.
 
-    In a building, names of stairs, ramps, escalators and lifts stand for their gates
-    (``Building.way``). People leave by those that lead on from their level and that they use: those
-    in wheelchairs by ramps and lifts. The others have no familiar way, and take the shortest one.
+    In a building, names of stairs, ramps, escalators and lifts stand for their gates. People leave
+    by the part of the way between their level and that of the entrance (``Building.way_out``).
+    Those who are elsewhere, or do not use what is on it, have no familiar way.
 
     Args:
         came: names of the gates, stairs, ramps, escalators and lifts by which people have come in,
-            in order; ``know`` sets others.
+            in order from the entrance on; ``know`` sets others.
         share: of those who know a way, how many leave by it.
 
     Raises:
@@ -75,14 +75,15 @@ class FamiliarRoutes(RouteChoice):
         """The gates of the way back, or none."""
         draws = deciding.rng.random(len(who)).tolist()
         rows = deciding.pedestrians[who].tolist()
-        ways = [self._known.get(row, self.came)[::-1] for row in rows]
+        came = [self._known.get(row, self.came) for row in rows]
         building = self._model.building
+        ways = [tuple(each[::-1]) for each in came]
         if building is not None:
             levels = building.true_places(deciding.positions[who])[1].tolist()
             types = [self._model.pedestrian_types[k] for k in deciding.types[who].tolist()]
             ways = [
-                () if level == ON_STAIRS else building.way(way, level, climbs=bool(kind.climbs))
-                for way, level, kind in zip(ways, levels, types, strict=True)
+                () if level == ON_STAIRS else building.way_out(way, level, climbs=bool(kind.climbs))
+                for way, level, kind in zip(came, levels, types, strict=True)
             ]
         return [way if draw < self.share else () for way, draw in zip(ways, draws, strict=True)]
 
@@ -91,7 +92,7 @@ def _check(names: Sequence[str], model: World) -> None:
     """Raise FloorPlanError for a name that is neither a gate's nor, in a building, that of stairs,
     a ramp, an escalator or a lift."""
     if model.building is not None:
-        model.building.way(names, model.building.levels[0].number)
+        model.building.way_out(names, model.building.levels[0].number)
         return
     for name in names:
         model.floor_plan.gate(name)

@@ -26,7 +26,7 @@ from mesa_mobility.buildings.places import Places
 from mesa_mobility.buildings.plans import plan_of_level, plan_of_sheets
 from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.buildings.sheets import Sheet, sheets_of
-from mesa_mobility.buildings.ways import gates_of_way
+from mesa_mobility.buildings.ways import gates_of_way_out
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, Gate, Room
 from mesa_mobility.floorplan.floor.checks import read_polygon
@@ -223,27 +223,30 @@ class Building:
         """Whether all gates of the stairs, ramp, escalator or lift of this name are open."""
         return all(self.floor_plan.is_open(gate.name) for gate in self._gates_of(name))
 
-    def way(self, names: Sequence[str], level: int, *, climbs: bool = True) -> tuple[str, ...]:
-        """Names of the gates of a way over stairs, ramps, escalators and lifts, for a route.
+    def way_out(self, came: Sequence[str], level: int, *, climbs: bool = True) -> tuple[str, ...]:
+        """Names of the gates by which people leave as they came in, for a route.
 
-        Stairs, ramps and escalators lead to their other level, and a lift to the level at which
-        what comes next begins. What does not begin at the level to which the way has come is left
-        out, and so is what these people do not use. Names of gates stay as they are.
+        The way in began on a level with an exit. People leave by the part of it between their level
+        and that one. There are no gates if they are elsewhere, or cannot go back that way, such as
+        people in wheelchairs over stairs, or anybody on an escalator.
 
         Args:
-            names: in the order in which people take them.
-            level: number of the level where they are.
+            came: names of stairs, ramps, escalators and lifts, and of gates between them, from the
+                entrance on. Names of gates alone are given back in reverse order.
+            level: number of the level where people are.
             climbs: whether they use stairs (`PedestrianType.climbs`).
 
         Raises:
             FloorPlanError: no such name, or no such level.
         """
         known = {each.name for each in self.floor_plan.gates}
-        for name in names:
+        for name in came:
             if name not in known:
                 self._gates_of(name)
         joints = {each.name: each for each in (*self.stairs, *self.lifts)}
-        return gates_of_way(names, self.level(level).number, climbs, joints, self.gates)
+        entrances = [each.number for each in self.levels if each.exits]
+        number = self.level(level).number
+        return gates_of_way_out(came, number, climbs, joints, self.gates, entrances)
 
     def _gates_of(self, name: str) -> tuple[Gate, ...]:
         gates = self.gates
