@@ -166,6 +166,8 @@ def _load(
             check(states[name], Members(part.members()), name, sizes_of(model))
         part.restore(states[name])
     check_crowd(model, states)
+    scene = model._scene
+    scene.environment.prepare(scene.crowd.destination[: model.population.count])
     check_ids(content["people"], model.inside)
     model.population.make_agents(
         model, content["people"]["unique_ids"], content["people"]["last_id"], model.frame

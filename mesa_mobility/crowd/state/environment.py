@@ -96,6 +96,15 @@ class Environment(Saved):
         if self._destinations != state["destinations"]:
             self._make_routers(list(state["destinations"]))
 
+    def prepare(self, destinations: NDArray[np.int64]) -> None:
+        """Make the routes of all bodies that have one of these destinations.
+
+        Corners around one edge have the number of the first body with routes, so restored people
+        need those of all bodies that the saved model had.
+        """
+        for body in np.unique(destinations % self.bodies).tolist():
+            self._router(body)
+
     @property
     def destinations(self) -> int:
         """Upper bound of the numbers of destinations."""
