@@ -167,7 +167,8 @@ def _load(
         part.restore(states[name])
     check_crowd(model, states)
     scene = model._scene
-    scene.environment.prepare(scene.crowd.destination[: model.population.count])
+    went = scene.crowd.destination[: model.population.count]
+    scene.environment.prepare(went.astype(np.int64))
     check_ids(content["people"], model.inside)
     model.population.make_agents(
         model, content["people"]["unique_ids"], content["people"]["last_id"], model.frame
