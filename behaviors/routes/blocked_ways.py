@@ -8,15 +8,12 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, FloorPlan, Range, TargetChoice, Targets, World
-from mesa_mobility.floorplan import Router, lines_of_sight
+from mesa_mobility import Deciding, FloorPlan, Range, TargetChoice, Targets
+from mesa_mobility.floorplan import lines_of_sight
 from mesa_mobility.schema import Array, Kind, Several, Text
 
 # Metres before a closed gate, which is a wall, that must be in sight.
 _BEFORE = 0.05
-
-# Metres that routes keep from walls beside the radius of the body.
-_BERTH = 0.05
 
 
 class BlockedWays(TargetChoice):
@@ -43,22 +40,21 @@ class BlockedWays(TargetChoice):
     def __init__(self, sight: Annotated[float, Range(0.0, unit="m", above=True)] = 15.0) -> None:
         self.sight = sight
         self._seen: dict[str, NDArray[np.bool_]] = {}
-        self._routers: dict[tuple[tuple[str, ...], float], Router] = {}
+        self._plans: dict[tuple[str, ...], FloorPlan] = {}
         self._version = -1
 
     def targets(self, deciding: Deciding) -> Targets:
         """Targets on the shortest ways that people believe in."""
         site, plan = deciding.site, deciding.site.plan
         found = site.targets(deciding.positions, deciding.destinations)
-        closed = [each for each in plan.openings() if not plan.is_open(each.name)]
+        closed = plan.closed_openings()
         self._seen = {each.name: self._seen.get(each.name, _NOBODY) for each in closed}
         if not closed:
             return found
         rows = deciding.pedestrians
         unseen = np.zeros((len(rows), len(closed)), dtype=np.bool_)
         for number, opening in enumerate(closed):
-            middle = np.add(opening.a, opening.b) / 2.0
-            unseen[:, number] = ~self._look(opening.name, rows, deciding.positions, middle, plan)
+            unseen[:, number] = ~self._look(opening.name, rows, deciding.positions, plan)
         # The gates of a route are numbers without exits.
         leaving = [bool(site.exits(int(number))) for number in deciding.destinations]
         unseen &= np.array(leaving, dtype=np.bool_)[:, None]
@@ -68,62 +64,47 @@ class BlockedWays(TargetChoice):
         distances, corners = np.array(found.distances), None
         if found.corners is not None:
             corners = np.array(found.corners)
-        names = [each.name for each in closed]
-        cores = np.array([each.half_width for each in self._model.pedestrian_types])
-        keys = np.column_stack([unseen, deciding.destinations, deciding.types])
-        for key in np.unique(keys[unseen.any(axis=1)], axis=0):
-            own = np.flatnonzero((keys == key).all(axis=1))
-            believed = tuple(
-                name for name, not_seen in zip(names, key[:-2].tolist(), strict=True) if not_seen
-            )
-            router = self._router(plan, believed, float(cores[key[-1]]))
-            to = router.destination(site.exits(int(key[-2])))
-            theirs = router.targets(deciding.positions[own], np.full(len(own), to))
+        for key in np.unique(unseen[unseen.any(axis=1)], axis=0):
+            own = np.flatnonzero((unseen == key).all(axis=1))
+            believed = tuple(each.name for each, hidden in zip(closed, key, strict=True) if hidden)
+            there = site.on(self._plan(plan, believed))
+            theirs = there.targets(deciding.positions[own], deciding.destinations[own])
             points[own], gates[own] = theirs.points, theirs.gates
             distances[own] = theirs.distances
             if corners is not None:
                 corners[own] = -1
         return Targets(points, gates, distances, corners)
 
-    def bind(self, model: World) -> None:
-        """Keep the model, whose types have bodies of different widths."""
-        self._model = model
-
     def _look(
         self,
         name: str,
         rows: NDArray[np.int64],
         places: NDArray[np.float64],
-        middle: NDArray[np.float64],
         plan: FloorPlan,
     ) -> NDArray[np.bool_]:
-        """(n,) whether people have seen by now that an opening is closed."""
+        """(n,) whether people have seen by now that an opening is closed, on either sheet."""
         known = self._seen[name]
         more = int(rows.max(initial=-1)) + 1 - len(known)
         if more > 0:
             known = self._seen[name] = np.append(known, np.zeros(more, dtype=np.bool_))
-        way = places - middle
-        away = np.maximum(np.hypot(*way.T), 1e-9)
-        before = middle + way * np.minimum(_BEFORE / away, 1.0)[:, None]
-        near = np.flatnonzero(~known[rows] & (away <= self.sight))
-        clear = lines_of_sight(plan, places[near], before[near])
-        known[rows[near[clear | (away[near] <= _BEFORE)]]] = True
+        for opening in plan.drawings(name):
+            way = places - opening.midpoint
+            away = np.maximum(np.hypot(*way.T), 1e-9)
+            before = opening.midpoint + way * np.minimum(_BEFORE / away, 1.0)[:, None]
+            near = np.flatnonzero(~known[rows] & (away <= self.sight))
+            clear = lines_of_sight(plan, places[near], before[near])
+            known[rows[near[clear | (away[near] <= _BEFORE)]]] = True
         return known[rows]
 
-    def _router(self, plan: FloorPlan, believed: tuple[str, ...], core: float) -> Router:
-        """Routes with these openings open."""
+    def _plan(self, plan: FloorPlan, believed: tuple[str, ...]) -> FloorPlan:
+        """The plan with these openings open."""
         if self._version != plan.version:
             self._version = plan.version
-            self._routers.clear()
-        key = believed, core
-        if key not in self._routers:
-            closed = [
-                each.name
-                for each in plan.openings()
-                if not plan.is_open(each.name) and each.name not in believed
-            ]
-            self._routers[key] = Router(plan.altered(closed=closed), clearance=core + _BERTH)
-        return self._routers[key]
+            self._plans.clear()
+        if believed not in self._plans:
+            closed = [each.name for each in plan.closed_openings() if each.name not in believed]
+            self._plans[believed] = plan.altered(closed=closed)
+        return self._plans[believed]
 
 
 _NOBODY = np.empty(0, dtype=np.bool_)

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, ClassVar
 
 import numpy as np
-from mesa_mobility.behaviors.routes.network import Network
+from mesa_mobility.behaviors.routes.network import Network, queue_numbers
 from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, Range, RouteChoice
@@ -25,8 +25,13 @@ class CongestionRouting(RouteChoice):
 
     Kemloh Wagoum, Seyfried and Holl (2012, Advances in Complex Systems 15, 1250029; arXiv
     1103.4080) let people leave the shortest path for a quicker one by weighing its gain when they
-    find a jam; here everybody knows how many head for each gate. The flow is that of
-    ``QuickestExit``, 2.23 w - 0.155 people a second through w metres, 0.5 at least.
+    find a jam; here everybody knows how many head for each gate. The flow through doors is that of
+    ``QuickestExit``, 2.23 w - 0.155 people a second through w metres, 0.5 at least. Stairs carry
+    1.1 w people a second down and 0.88 w up (IMO MSC.1/Circ.1533), an escalator as many as its
+    capacity says, and a lift a full car for each of its longest rides to and fro.
+
+    People who do not use stairs choose among ramps and the lifts that they use. Nobody chooses anew
+    on an escalator or in a lift.
 
     Args:
         interval: mean seconds between two choices.
@@ -48,68 +53,94 @@ class CongestionRouting(RouteChoice):
         super().__init__(interval)
         self.patience = patience
         self._under_way: set[int] = set()
-        self._network: Network | None = None
+        self._networks: dict[int, Network] = {}
 
     def routes(self, deciding: Deciding, who: NDArray[np.int64]) -> list[Sequence[str] | None]:
         """The gates of the quickest way; those who gain too little go on as before."""
-        if self._network is None or self._network.graph is not self.graph:
-            self._network = Network(self.graph, self._model.floor_plan)
-        network, inside = self._network, deciding.inside
-        rows = deciding.pedestrians[who]
+        site, inside = deciding.site, deciding.inside
+        rows, kinds = deciding.pedestrians[who], deciding.types[who].tolist()
+        networks = self._networks_of(deciding, kinds)
         at = inside.places(rows)
-        speeds, heading = inside.preferred_speeds[at], self._heading(deciding, network)
+        speeds, (heading, away) = inside.preferred_speeds[at], self._heading(deciding)
         new = [row not in self._under_way for row in rows.tolist()]
         self._under_way.update(rows.tolist())
-        others = np.ones(len(heading), dtype=np.bool_)
+        others = heading >= 0
         others[at] = False
-        queues = [
-            np.sort(inside.distances[others & (heading == number)]).tolist()
-            for number in range(len(network.names))
-        ]
-        distances = network.distances(deciding.positions[who])
-        exits = [self._exits(deciding, k) for k in who.tolist()]
+        queues = _queues(heading[others], away[others], len(site.plan.openings()))
+        queued = np.array([len(queue) for queue in queues])
+        bodies = [site.body(kind) for kind in kinds]
+        distances: list[NDArray[np.float64]] = [np.empty(0)] * len(who)
+        for body, network in networks.items():
+            own = [k for k, each in enumerate(bodies) if each == body]
+            found = network.distances(deciding.positions[who[own]])
+            for k, lengths in zip(own, found, strict=True):
+                distances[k] = lengths
+        ends = [(body, self._exits(deciding, k)) for body, k in zip(bodies, who, strict=True)]
         speed = float(speeds.mean())
-        onward = {each: network.onward(each, queues, speed) for each in set(exits)}
+        onward = {
+            (body, exits): networks[body].onward(exits, queued, speed) for body, exits in set(ends)
+        }
         given: list[Sequence[str] | None] = [None] * len(who)
         # Those in front choose first, and count for the others.
-        for k in np.argsort(distances.min(axis=1), kind="stable").tolist():
-            rest, following = onward[exits[k]]
+        nearest = [lengths.min(initial=np.inf) for lengths in distances]
+        for k in np.argsort(nearest, kind="stable").tolist():
+            network = networks[bodies[k]]
+            number, on = network.number, onward[ends[k]]
             ahead = [
-                bisect(queues[number], away)
-                for number, away in zip(network.number, distances[k].tolist(), strict=True)
+                bisect(queues[queue], length)
+                for queue, length in zip(number.tolist(), distances[k].tolist(), strict=True)
             ]
-            times = distances[k] / speeds[k] + ahead / network.flows[network.number] + rest
-            best = int(times.argmin())
-            if not np.isfinite(times[best]):
+            times = (distances[k] + on.metres) / speeds[k] + ahead / network.flows + on.seconds
+            if not np.isfinite(times.min(initial=np.inf)):
                 continue
-            before = times[network.number == heading[at[k]]].min(initial=np.inf)
+            best = int(times.argmin())
+            before = times[number == heading[at[k]]].min(initial=np.inf)
             if new[k] or times[best] < (1.0 - self.patience) * before:
-                given[k] = network.way(best, following)
+                given[k] = network.way(best, on.following)
             else:
-                best = int(np.where(network.number == heading[at[k]], times, np.inf).argmin())
-            insort(queues[network.number[best]], float(distances[k, best]))
+                best = int(np.where(number == heading[at[k]], times, np.inf).argmin())
+            insort(queues[number[best]], float(distances[k][best]))
         return given
 
-    def _heading(self, deciding: Deciding, network: Network) -> NDArray[np.int64]:
-        """(m,) number of the gate or exit to which everybody inside goes next, -1 for none."""
+    def _networks_of(self, deciding: Deciding, kinds: Sequence[int]) -> dict[int, Network]:
+        """The network of each body among people of some types, by its index."""
+        site = deciding.site
+        for kind in dict.fromkeys(kinds):
+            body, graph = site.body(kind), site.route_graph(kind)
+            if body not in self._networks or self._networks[body].graph is not graph:
+                self._networks[body] = Network(graph, site.plan)
+        return {body: self._networks[body] for body in map(site.body, dict.fromkeys(kinds))}
+
+    def _heading(self, deciding: Deciding) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """(m,) number of the queue in which everybody inside is next, -1 for none, and their (m,)
+        metres to its end."""
         inside, site = deciding.inside, deciding.site
-        to = inside.destinations
-        heading = np.full(len(to), -1, dtype=np.int64)
-        kinds = np.unique(inside.types_of(inside.pedestrians)).tolist()
-        gates = {gate.name for gate in site.plan.gates}
-        for number, name in enumerate(network.names):
-            if name in gates:
-                heading[np.isin(to, [site.crossing(name, kind) for kind in kinds])] = number
-        for destination in np.unique(to[heading < 0]).tolist():
-            known = set(site.exits(destination))
-            mine = [number for number, name in enumerate(network.names) if name in known]
-            if mine:
-                own = np.flatnonzero(to == destination)
-                away = np.hypot(*(inside.positions[own][:, None] - network.middles[mine]).T)
-                heading[own] = np.array(mine)[away.argmin(axis=0)]
-        return heading
+        numbers, to = queue_numbers(site.plan), inside.destinations
+        heading, away = np.full(len(to), -1, dtype=np.int64), inside.distances.copy()
+        for destination in np.unique(to).tolist():
+            own, gate = to == destination, site.gate(destination)
+            if gate is not None:
+                heading[own] = numbers[gate]
+            elif known := [name for name in site.exits(destination) if site.plan.is_open(name)]:
+                middles = [site.plan.gate(name).midpoint for name in known]
+                there = np.hypot(*(inside.positions[own][:, None] - middles).T).argmin(axis=0)
+                heading[own] = np.array([numbers[name] for name in known])[there]
+        # Those in a lift are ahead of all who wait for it.
+        lifts = self._model.lifts
+        rides = lifts.rides(inside.pedestrians)
+        for number, shaft in enumerate(lifts.shafts):
+            heading[rides == number] = numbers[shaft.gates[0].name]
+        away[rides >= 0] = 0.0
+        return heading, away
 
     def _exits(self, deciding: Deciding, k: int) -> tuple[str, ...]:
         """Names of the exits by which one of those who decide may leave."""
         names = deciding.site.exits(int(deciding.destinations[k]))
         return names or self._model.population.exits(int(deciding.pedestrians[k]))
+
+
+def _queues(heading: NDArray[np.int64], away: NDArray[np.float64], count: int) -> list[list[float]]:
+    """For each of so many queues, the metres of the people in it, in rising order."""
+    order = np.lexsort((away, heading))
+    ends = np.searchsorted(heading[order], np.arange(1, count))
+    return [each.tolist() for each in np.split(away[order], ends)]

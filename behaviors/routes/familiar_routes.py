@@ -8,7 +8,8 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from mesa_mobility import Deciding, ListOf, Pedestrian, Range, RouteChoice
+from mesa_mobility import Deciding, ListOf, Pedestrian, Range, RouteChoice, World
+from mesa_mobility.buildings import ON_STAIRS
 from mesa_mobility.errors import ModelError
 from mesa_mobility.schema import Array, Kind, Several, Text, Whole
 
@@ -19,10 +20,15 @@ class FamiliarRoutes(RouteChoice):
     In a fire people moved towards what they knew (Sime 1985, Environment and Behavior 17: 697-724).
     How many do so depends on the place, and ``share`` has to be calibrated. This behaviour does not
     change the exits by which people may leave. For people who leave by the exit that they know, set
-    their ``exits``, or use ``FamiliarExit`` in place of this behaviour.
+    their ``exits``, or use ``FamiliarExit`` instead of this behaviour.
+
+    In a building, names of stairs, ramps, escalators and lifts stand for their gates. People leave
+    by the part of the way between their level and that of the entrance (``Building.way_out``).
+    Those who are elsewhere, or do not use what is on it, have no familiar way.
 
     Args:
-        came: names of the gates by which people have come in, in order; ``know`` sets others.
+        came: names of the gates, stairs, ramps, escalators and lifts by which people have come in,
+            in order from the entrance on; ``know`` sets others.
         share: of those who know a way, how many leave by it.
 
     Raises:
@@ -32,7 +38,7 @@ class FamiliarRoutes(RouteChoice):
     name = "familiar_routes"
     saved: ClassVar[Mapping[str, Kind]] = {
         "_again": Array("f8", high=1e9, infinite=True),
-        "_known": Several(Whole(below="people"), dict, values=Several(Text("gates"), tuple)),
+        "_known": Several(Whole(below="people"), dict, values=Several(Text("ways"), tuple)),
     }
 
     def __init__(
@@ -46,28 +52,50 @@ class FamiliarRoutes(RouteChoice):
         self._known: dict[int, tuple[str, ...]] = {}
 
     def know(self, people: Iterable[Pedestrian], came: Sequence[str]) -> None:
-        """Set the gates by which some have come in, in order; they choose again at their next
-        decision.
+        """Set the gates, stairs, ramps, escalators and lifts by which some have come in, in order;
+        they choose again at their next decision.
 
         Raises:
             ModelError: a single name.
-            FloorPlanError: the name of an unknown gate.
+            FloorPlanError: an unknown name.
         """
         names = _names(came)
         for person in people:
-            for name in names:
-                person.model.floor_plan.gate(name)
+            _check(names, person.model)
             self._known[person.row] = names
             if person.row < len(self._again):
                 self._again[person.row] = 0.0
 
+    def bind(self, model: World) -> None:
+        """Keep the model; FloorPlanError if it lacks a gate or stairs by which people have come."""
+        super().bind(model)
+        _check(self.came, model)
+
     def routes(self, deciding: Deciding, who: NDArray[np.int64]) -> list[Sequence[str]]:
         """The gates of the way back, or none."""
         draws = deciding.rng.random(len(who)).tolist()
-        return [
-            self._known.get(row, self.came)[::-1] if draw < self.share else ()
-            for row, draw in zip(deciding.pedestrians[who].tolist(), draws, strict=True)
-        ]
+        rows = deciding.pedestrians[who].tolist()
+        came = [self._known.get(row, self.came) for row in rows]
+        building = self._model.building
+        ways = [tuple(each[::-1]) for each in came]
+        if building is not None:
+            levels = building.true_places(deciding.positions[who])[1].tolist()
+            types = [self._model.pedestrian_types[k] for k in deciding.types[who].tolist()]
+            ways = [
+                () if level == ON_STAIRS else building.way_out(way, level, climbs=bool(kind.climbs))
+                for way, level, kind in zip(came, levels, types, strict=True)
+            ]
+        return [way if draw < self.share else () for way, draw in zip(ways, draws, strict=True)]
+
+
+def _check(names: Sequence[str], model: World) -> None:
+    """Raise FloorPlanError for a name that is neither a gate's nor, in a building, that of stairs,
+    a ramp, an escalator or a lift."""
+    if model.building is not None:
+        model.building.way_out(names, model.building.levels[0].number)
+        return
+    for name in names:
+        model.floor_plan.gate(name)
 
 
 def _names(gates: Sequence[str]) -> tuple[str, ...]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from mesa_mobility.behaviors.exits.quickest_exit import people_a_second
+from mesa_mobility.behaviors.routes.flows import flows_through
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import dijkstra
 
 from mesa_mobility import FloorPlan
 from mesa_mobility.floorplan import lines_of_sight
@@ -25,19 +26,35 @@ _CLEAR = 0.1
 _BEFORE = 0.01
 
 
+class Onward(NamedTuple):
+    """The ways from o openings to some exits.
+
+    Attributes:
+        metres: (o,) their lengths; inf without a way.
+        seconds: (o,) for which people wait on them in queues.
+        following: (o,) the opening after each, -1 for none.
+    """
+
+    metres: NDArray[np.float64]
+    seconds: NDArray[np.float64]
+    following: NDArray[np.int64]
+
+
 class Network:
     """Lengths between gates and exits, each gate once for either direction in which it is crossed.
 
+    Of a gate that is drawn on two sheets the drawing on its own sheet counts, and of the doors of
+    lifts the way in: where riders get out depends on where they go next.
+
     Args:
-        graph: the route graph of the plan as it is now.
+        graph: the routes of people with one kind of body, as the plan is now.
         plan: the floor plan.
 
     Attributes:
-        graph: the route graph.
-        names: (g,) of the gates and exits.
-        flows: (g,) people a second who pass each.
-        middles: (g, 2) their middles, metres.
-        number: (o,) which of these each opening is: a gate in one direction, or an exit.
+        graph: the routes.
+        number: (o,) the queue before each opening, a gate in one direction or an exit: its number
+            in ``FloorPlan.openings()``, and before all doors of a lift that of the first.
+        flows: (o,) people a second who pass each.
     """
 
     def __init__(self, graph: nx.DiGraph, plan: FloorPlan) -> None:
@@ -46,31 +63,48 @@ class Network:
         self.graph = graph
         self._plan = plan
         openings: dict[tuple[str, tuple[float, float]], list[int]] = {}
+        doors = {gate.name: shaft for shaft in plan.shafts for gate in shaft.gates}
+        inwards: list[int] = []
         for node, data in graph.nodes(data=True):
-            if data["opening"]:
-                openings.setdefault((data["opening"], data["direction"]), []).append(node)
-        self.names = list(dict.fromkeys(name for name, _ in openings))
-        known = [plan.gate(name) for name in self.names]
-        self.flows = people_a_second([each.length for each in known])
-        self.middles = np.array([np.add(each.a, each.b) / 2.0 for each in known]).reshape(-1, 2)
-        self.number = np.array([self.names.index(name) for name, _ in openings], dtype=np.int64)
+            name, direction = data["opening"], data["direction"]
+            if not name or plan.drawings(name)[0].name != name:
+                continue
+            if name in doors:
+                if float(np.dot(doors[name].into(), direction)) < 0.0:
+                    continue
+                inwards.append(node)
+            openings.setdefault((name, direction), []).append(node)
+        self._names = [name for name, _ in openings]
+        numbers = queue_numbers(plan)
+        self.number = np.array([numbers[name] for name in self._names], dtype=np.int64)
+        self.flows = flows_through(plan, self._names, [way for _, way in openings])
         exits = {each.name for each in plan.exits}
-        self._leaves = np.array([name in exits for name, _ in openings], dtype=np.bool_)
+        self._leaves = np.array([name in exits for name in self._names], dtype=np.bool_)
         self._places = np.array([xy for _, xy in graph.nodes(data="position")]).reshape(-1, 2)
         self._ahead = np.array(
             [way or (0.0, 0.0) for _, way in graph.nodes(data="direction")]
         ).reshape(-1, 2)
         self._from_nodes = np.full((len(graph), len(openings)), np.inf)
-        backwards = graph.reverse(copy=False)
+        # Nobody turns round in a car: from its door routes lead to other doors alone.
+        within = [
+            (node, other)
+            for node in inwards
+            for other in graph.successors(node)
+            if graph.nodes[other]["opening"] not in doors
+        ]
+        ways = nx.restricted_view(graph, [], within)
+        backwards = nx.to_scipy_sparse_array(ways, format="csr").T.tocsr()
         for number, nodes in enumerate(openings.values()):
-            for node, length in nx.multi_source_dijkstra_path_length(backwards, set(nodes)).items():
-                self._from_nodes[node, number] = length
+            self._from_nodes[:, number] = dijkstra(backwards, indices=nodes, min_only=True)
         self._lengths = np.array(
             [self._from_nodes[nodes].min(axis=0) for nodes in openings.values()]
         ).reshape(len(openings), len(openings))
         np.fill_diagonal(self._lengths, np.inf)
         self._lengths[self._leaves] = np.inf
         self._lengths = self._next_alone(self._lengths)
+        # Nobody who has passed a gate goes straight back through it.
+        names = np.array(self._names)
+        self._onward = np.where(names[:, None] == names, np.inf, self._lengths)
 
     def _next_alone(self, lengths: NDArray[np.float64]) -> NDArray[np.float64]:
         """(n, o) the same lengths, but inf for openings behind another one on the way."""
@@ -93,20 +127,18 @@ class Network:
             found = np.minimum(found, first[:, node, None] + self._from_nodes[node])
         return self._next_alone(found)
 
-    def onward(
-        self, exits: Sequence[str], queues: list[list[float]], speed: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """(o,) seconds from each opening to the exits, and the opening after it, -1 for none.
+    def onward(self, exits: Sequence[str], queued: NDArray[np.int64], speed: float) -> Onward:
+        """The quickest ways from each opening to the exits.
 
         Args:
             exits: their names.
-            queues: for each gate and exit, as many numbers as people head for it.
-            speed: m/s.
+            queued: for each queue the number of people in it.
+            speed: at which they are the quickest, m/s.
         """
-        mine = np.array([self.names[number] in exits for number in self.number], dtype=np.bool_)
+        mine = np.array([name in exits for name in self._names], dtype=np.bool_)
         rest = np.where(mine, 0.0, np.inf)
-        waits = np.array([len(queue) for queue in queues]) / self.flows
-        steps = self._lengths / speed + waits[self.number]
+        waits = queued[self.number] / self.flows
+        steps = self._onward / speed + waits
         following = np.full(len(rest), -1, dtype=np.int64)
         for _ in range(len(rest)):
             times = steps + rest
@@ -115,12 +147,28 @@ class Network:
                 break
             following[better] = times.argmin(axis=1)[better]
             rest = np.minimum(rest, times.min(axis=1))
-        return rest, following
+        metres, seconds = np.where(mine, 0.0, np.inf), np.where(mine, 0.0, np.inf)
+        for each in np.argsort(rest, kind="stable"):
+            after = following[each]
+            if after >= 0:
+                metres[each] = self._onward[each, after] + metres[after]
+                seconds[each] = waits[after] + seconds[after]
+        return Onward(metres, seconds, following)
 
     def way(self, first: int, following: NDArray[np.int64]) -> list[str]:
         """Names of the gates of the way that begins with an opening."""
         gates = []
         while not self._leaves[first]:
-            gates.append(self.names[self.number[first]])
+            gates.append(self._names[first])
             first = int(following[first])
         return gates
+
+
+def queue_numbers(plan: FloorPlan) -> dict[str, int]:
+    """The number of the queue before each gate and exit, by its name.
+
+    The drawings of a gate have one queue, and so have all doors of a lift: one car serves them.
+    """
+    numbers = {opening.name: number for number, opening in enumerate(plan.openings())}
+    first = {gate.name: each.gates[0].name for each in plan.shafts for gate in each.gates}
+    return {name: numbers[first.get(name, plan.drawings(name)[0].name)] for name in numbers}

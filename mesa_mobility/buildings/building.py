@@ -26,10 +26,12 @@ from mesa_mobility.buildings.places import Places
 from mesa_mobility.buildings.plans import plan_of_level, plan_of_sheets
 from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.buildings.sheets import Sheet, sheets_of
+from mesa_mobility.buildings.ways import gates_of_way_out
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, Gate, Room
 from mesa_mobility.floorplan.floor.checks import read_polygon
 from mesa_mobility.floorplan.formats.geojson import label
+from mesa_mobility.plugins.registry import did_you_mean
 
 
 class Building:
@@ -202,6 +204,58 @@ class Building:
             name = self.stairs[self._owners[flight.name]].name
             found[name] = (*found.get(name, ()), *seam.gates)
         return found | {shaft.name: shaft.gates for shaft in self.floor_plan.shafts}
+
+    def close(self, name: str) -> None:
+        """Close the stairs, ramp, escalator or lift of this name: all of its gates become walls.
+
+        Raises:
+            FloorPlanError: no such name.
+        """
+        for gate in self._gates_of(name):
+            self.floor_plan.close_gate(gate.name)
+
+    def open(self, name: str) -> None:
+        """Open the stairs, ramp, escalator or lift of this name again; see `close`."""
+        for gate in self._gates_of(name):
+            self.floor_plan.open_gate(gate.name)
+
+    def is_open(self, name: str) -> bool:
+        """Whether all gates of the stairs, ramp, escalator or lift of this name are open."""
+        return all(self.floor_plan.is_open(gate.name) for gate in self._gates_of(name))
+
+    def way_out(self, came: Sequence[str], level: int, *, climbs: bool = True) -> tuple[str, ...]:
+        """Names of the gates by which people leave as they came in, for a route.
+
+        The way in began on a level with an exit. People leave by the part of it between their level
+        and that one. There are no gates if they are elsewhere, or cannot go back that way, such as
+        people in wheelchairs over stairs, or anybody on an escalator.
+
+        Args:
+            came: names of stairs, ramps, escalators and lifts, and of gates between them, from the
+                entrance on. Names of gates alone are given back in reverse order.
+            level: number of the level where people are.
+            climbs: whether they use stairs (`PedestrianType.climbs`).
+
+        Raises:
+            FloorPlanError: no such name, or no such level.
+        """
+        known = {each.name for each in self.floor_plan.gates}
+        for name in came:
+            if name not in known:
+                self._gates_of(name)
+        joints = {each.name: each for each in (*self.stairs, *self.lifts)}
+        entrances = [each.number for each in self.levels if each.exits]
+        number = self.level(level).number
+        return gates_of_way_out(came, number, climbs, joints, self.gates, entrances)
+
+    def _gates_of(self, name: str) -> tuple[Gate, ...]:
+        gates = self.gates
+        if name not in gates:
+            raise FloorPlanError(
+                f"there are no stairs, ramp, escalator or lift {name!r}"
+                f"{did_you_mean(str(name), gates)}; there are {', '.join(map(repr, gates))}"
+            )
+        return gates[name]
 
     @cached_property
     def rooms(self) -> tuple[Room, ...]:

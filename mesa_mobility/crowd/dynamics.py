@@ -145,8 +145,7 @@ class Dynamics(Saved):
         shut = model.doors.advance(now)
         self._let_in()
         lifts, escalators = self._scene.lifts, self._scene.escalators
-        shut |= lifts.advance(now, people.present, crowd)
-        self._ride(people.present)
+        shut |= self._ride(people.present)
         if now == 0:
             types = [each.name for each in model.pedestrian_types]
             if said := without_weight(model.terms, types):
@@ -272,16 +271,21 @@ class Dynamics(Saved):
                 self.insert([place], inflow.newcomers)
                 inflow.let_in()
 
-    def _ride(self, inside: NDArray[np.int64]) -> None:
-        """Carry those on escalators on; they take no decisions."""
-        scene, now = self._scene, self._model.frame
-        if not len(scene.escalators):
-            return
-        table, crowd = scene.repertoire.table, scene.crowd
-        # Those who are carried on lose their paths, on which crossed gates are found.
-        riding = scene.escalators.riders(inside)
-        scene.journeys.advance(riding, now, crowd, table, self._model.rng)
-        scene.escalators.advance(now, inside, crowd, table)
+    def _ride(self, inside: NDArray[np.int64]) -> bool:
+        """Carry those in lifts and on escalators on; whether a door has shut."""
+        scene, now, crowd = self._scene, self._model.frame, self._scene.crowd
+        escalators, journeys, table = scene.escalators, scene.journeys, scene.repertoire.table
+        shut = scene.lifts.advance(
+            now, inside, crowd, lambda row, gate: journeys.beyond(row, gate, crowd)
+        )
+        if not len(escalators):
+            return shut
+        if len(journeys):
+            # Those who are carried on lose their paths, on which crossed gates are found.
+            belts = escalators.on_belts(inside, crowd)
+            journeys.advance(belts, now, crowd, table, self._model.rng)
+        escalators.advance(now, inside, crowd, table)
+        return shut
 
     @property
     def _plan_has_changed(self) -> bool:

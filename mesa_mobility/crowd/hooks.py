@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from mesa_mobility.buildings import Building
 from mesa_mobility.crowd.journeys.journeys import Journeys
 from mesa_mobility.crowd.journeys.visit import Route
 from mesa_mobility.crowd.lifts.escalators import Escalators
@@ -65,6 +66,10 @@ class World(Protocol):
     @property
     def floor_plan(self) -> FloorPlan:
         """Where people walk."""
+
+    @property
+    def building(self) -> Building | None:
+        """The building, if it has several levels."""
 
     @property
     def pedestrian_types(self) -> tuple[PedestrianType, ...]:

@@ -13,7 +13,7 @@ from mesa_mobility import Building, Exit, FloorPlan, Level, Stairs
 from mesa_mobility.buildings import ON_STAIRS
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Gate, Router
-from tests.fixtures.buildings import HALL, RISE, two_storeys
+from tests.fixtures.buildings import HALL, RISE, two_storeys, with_refuge_and_lift
 
 OFFICE = two_storeys()
 
@@ -249,3 +249,26 @@ def test_what_is_wrong_is_said_in_one_line_with_its_place(levels, given, said):
     with pytest.raises(FloorPlanError, match=said) as error:
         Building(levels, given)
     assert "\n" not in str(error.value)
+
+
+def test_stairs_and_lifts_are_closed_and_opened_as_a_whole():
+    building = with_refuge_and_lift()
+    plan = building.floor_plan
+    for name, gates in (("south", 4), ("lift", 2)):
+        assert building.is_open(name)
+        building.close(name)
+        assert not building.is_open(name)
+        assert len(plan.closed_gates()) == gates
+        # One gate is not the whole.
+        plan.open_gate(building.gates[name][0].name)
+        assert not building.is_open(name)
+        building.open(name)
+        assert building.is_open(name)
+        assert plan.closed_gates() == ()
+    for call in (building.close, building.open, building.is_open):
+        with pytest.raises(FloorPlanError) as said:
+            call("soth")
+        assert str(said.value) == (
+            "there are no stairs, ramp, escalator or lift 'soth', did you mean 'south'?; "
+            "there are 'south', 'lift'"
+        )

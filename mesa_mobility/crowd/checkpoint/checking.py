@@ -91,6 +91,10 @@ def sizes_of(model: CrowdModel) -> dict[str, Any]:
         "exit_numbers": len(plan.exits),
         "exits": [each.name for each in plan.exits],
         "gates": [each.name for each in plan.gates],
+        "ways": [
+            *(each.name for each in plan.gates),
+            *(model.building.gates if model.building else ()),
+        ],
         "openings": [each.name for each in plan.openings()],
     }
 

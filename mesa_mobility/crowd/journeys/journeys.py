@@ -51,7 +51,8 @@ class Journey:
         body: index of the core radius of those who go there.
         legs: destination number of each leg.  Unless it is a loop, one more leg leads from the last
             stop to the exits.
-        lines: (legs, 4) line of the gate that ends each leg, metres; nan for places and exits.
+        lines: (legs, 4) line of the gate that ends each leg, metres; nan for places and exits. Of a
+            gate of a seam it is that on its own sheet; its copy on the other sheet counts as well.
     """
 
     stops: tuple[str | Visit, ...]
@@ -207,6 +208,16 @@ class Journeys(Saved):
         over = crossed >= len(journey.stops) and not journey.loop
         return None if over else journey.stops[crossed % len(journey.stops)]
 
+    def beyond(self, row: int, gate: str, crowd: Crowd) -> int:
+        """Number of somebody's destination once they have crossed a gate: if that is their next
+        stop, the one after it."""
+        leg = int(self._now(np.array([row]), crowd)[0])
+        if self.next_stop(row, crowd) != gate:
+            return int(crowd.destination[row])
+        number = int(crowd.agenda["journey"][row])
+        first, count = int(self._firsts[number]), int(self._counts[number])
+        return int(self._legs[first + (leg + 1 - first) % count])
+
     def to_stay(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.bool_]:
         """(n,) whether each in ``rows`` is bound for a place at which they stay, or is there."""
         if not self._places:
@@ -231,7 +242,8 @@ class Journeys(Saved):
         self._counts = np.array([len(each.legs) for each in known], dtype=np.int64)
         self._firsts = np.cumsum(self._counts) - self._counts
         self._legs = np.concatenate([each.legs for each in known])
-        self._lines = np.concatenate([each.lines for each in known])
+        lines = np.concatenate([each.lines for each in known])
+        copies = np.full_like(lines, np.nan)
         # Index of the place at the end of each leg, -1 for gates and exits.
         self._place_of = np.full(len(self._legs), -1, dtype=np.int64)
         # Whether people stay at the end of each leg.
@@ -241,6 +253,11 @@ class Journeys(Saved):
                 if isinstance(stop, Visit):
                     self._place_of[first + k] = self._place(stop, journey.body)
                     self._to_stay[first + k] = stop.stay != 0.0
+                else:
+                    for copy in self._plan.drawings(stop)[1:]:
+                        copies[first + k] = *copy.a, *copy.b
+        # On which lines of gates crossings are looked for.
+        self._drawn = [lines, copies][: 1 + bool(np.isfinite(copies).any())]
 
     def _place(self, visit: Visit, body: int) -> int:
         """Index of a place for people of one core radius."""
@@ -260,7 +277,7 @@ class Journeys(Saved):
     def _leg(self, stop: str | Visit, kind: int) -> int:
         """Number of the destination of a stop."""
         if isinstance(stop, str):
-            return self._site.crossing(stop, kind)
+            return self._site.crossing(self._plan.drawings(stop)[0].name, kind)
         place = self._places[self._place(stop, self._site.body(kind))][2]
         return self._site.point(place.way_point(), kind)
 
@@ -268,7 +285,7 @@ class Journeys(Saved):
         """(4,) the line of a gate, metres; nan for a place."""
         if isinstance(stop, Visit):
             return (np.nan,) * 4
-        gate = self._plan.gate(stop)
+        gate = self._plan.drawings(stop)[0]
         return *gate.a, *gate.b
 
     def _now(self, rows: NDArray[np.int64], crowd: Crowd) -> NDArray[np.int64]:
@@ -293,9 +310,12 @@ class Journeys(Saved):
         on = rows[agenda["journey"][rows] > 0]
         stayed = self._stayed(on, frame, crowd, rng)
         while len(on):
-            lines = self._lines[self._now(on, crowd)]
-            when = np.full(len(on), np.inf)
-            find_crossings(on, lines, frame, agenda["checked"][on], table, crowd.records, when)
+            legs, when = self._now(on, crowd), np.full(len(on), np.inf)
+            for lines in self._drawn:
+                found = np.full(len(on), np.inf)
+                since = agenda["checked"][on]
+                find_crossings(on, lines[legs], frame, since, table, crowd.records, found)
+                when = np.minimum(when, found)
             over = np.isfinite(when)
             agenda["checked"][on] = np.where(over, when, frame)
             if len(stayed):

@@ -104,6 +104,15 @@ class Escalators(Saved):
         self._make_room(inside)
         return inside[self._rides[inside] != NOBODY]
 
+    def on_belts(self, inside: NDArray[np.int64], crowd: Crowd) -> NDArray[np.int64]:
+        """Rows of those inside whom an escalator carries or may take up."""
+        points, found = np.column_stack([crowd.x[inside], crowd.y[inside]]), [self.riders(inside)]
+        for belt in self._belts:
+            near = belt.near(points)
+            on = (near.along >= 0.0) & (near.along < belt.length) & (near.aside <= belt.half)
+            found.append(inside[near.who[on]])
+        return np.unique(np.concatenate(found))
+
     def next_look(self, frame: int) -> int:
         """The next frame after this one in which something may happen."""
         return (frame // EVERY + 1) * EVERY

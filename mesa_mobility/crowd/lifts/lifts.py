@@ -215,13 +215,17 @@ class Lifts(Saved):
         """The next frame after this one in which something may happen."""
         return (frame // EVERY + 1) * EVERY
 
-    def advance(self, frame: int, inside: NDArray[np.int64], crowd: Crowd) -> bool:
+    def advance(
+        self, frame: int, inside: NDArray[np.int64], crowd: Crowd, beyond: Callable[[int, str], int]
+    ) -> bool:
         """Let people in and out, and move the cars; whether a door has shut.
 
         Args:
             frame: now.
             inside: (n,) rows of the people inside.
             crowd: the crowd; those who ride are moved.
+            beyond: number of the destination of the person in a row once they have crossed the gate
+                of this name.
         """
         if frame % EVERY or not len(self._calls):
             return False
@@ -231,7 +235,7 @@ class Lifts(Saved):
                 continue
             if self._from[lift] != NOBODY:
                 self._arrive(lift, frame, inside, crowd)
-            self._stand(lift, shaft, frame, inside, crowd)
+            self._stand(lift, shaft, frame, inside, crowd, beyond)
         return self._shut_doors()
 
     def _arrive(self, lift: int, frame: int, inside: NDArray[np.int64], crowd: Crowd) -> None:
@@ -251,6 +255,7 @@ class Lifts(Saved):
         frame: int,
         inside: NDArray[np.int64],
         crowd: Crowd,
+        beyond: Callable[[int, str], int],
     ) -> None:
         """Let people out, then in, then go."""
         stop = int(self.at[lift])
@@ -264,7 +269,7 @@ class Lifts(Saved):
         ours = inside[self._rides[inside] == lift]
         if waited >= GIVES_UP and len(ours):
             self._rides[ours[~self._are_in(lift, stop, ours, crowd)]] = NOBODY
-        elif self._admit(lift, stop, inside, crowd):
+        elif self._admit(lift, stop, inside, crowd, beyond):
             self._since[lift], waited = frame, 0
         ours = inside[self._rides[inside] == lift]
         points = np.column_stack([crowd.x[ours], crowd.y[ours]])
@@ -297,7 +302,14 @@ class Lifts(Saved):
         self._open[lift] = frame + round(seconds * FRAMES_A_SECOND)
         self.trips[lift] += 1
 
-    def _admit(self, lift: int, stop: int, inside: NDArray[np.int64], crowd: Crowd) -> bool:
+    def _admit(
+        self,
+        lift: int,
+        stop: int,
+        inside: NDArray[np.int64],
+        crowd: Crowd,
+        beyond: Callable[[int, str], int],
+    ) -> bool:
         """Let those in who fit, those nearest to the door first; whether anybody was."""
         shaft, admitted = self.shafts[lift], False
         ours = inside[self._rides[inside] == lift]
@@ -305,18 +317,18 @@ class Lifts(Saved):
             if len(ours) >= shaft.capacity:
                 break
             spot = free_spot(shaft, stop, crowd.core[row], self._spot[ours], crowd.core[ours])
-            to = self._destination(shaft, stop, row, crowd)
+            to = self._destination(shaft, stop, row, beyond(row, self._doors[lift][stop]))
             if spot is None or to == stop:
                 continue
             self._rides[row], self._to[row], self._spot[row] = lift, to, spot
             ours, admitted = np.append(ours, row), True
         return admitted
 
-    def _destination(self, shaft: Shaft, stop: int, row: int, crowd: Crowd) -> int:
-        """The stop from which somebody's way out is shortest, the ride included."""
+    def _destination(self, shaft: Shaft, stop: int, row: int, destination: int) -> int:
+        """The stop from which a person's way to a destination is shortest, the ride included."""
         count = len(shaft.stops)
         doors = np.array([shaft.before_door(k) for k in range(count)])
-        destinations = crowd.destination[[row]].astype(np.int64).repeat(count)
+        destinations = np.full(count, destination, dtype=np.int64)
         _, lengths = self.ways(np.full(count, row), doors, destinations)
         ways = [lengths[k] + shaft.ride_length(stop, k) for k in range(count)]
         # The way from this stop leads through the lift as well, and is as long as that by the best.

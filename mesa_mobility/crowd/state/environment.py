@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -18,6 +18,9 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, Router, Targets
 from mesa_mobility.floorplan.routing.targets import Destination, is_point
 from mesa_mobility.schema import Each, Either, Kind, Maybe, Members, Real, Several, Text
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 _SLIM = 0.05
 """Clearance in metres of routes for a body so slim that only walls stop it."""
@@ -92,6 +95,15 @@ class Environment(Saved):
         self.plan.restore(state["plan"])
         if self._destinations != state["destinations"]:
             self._make_routers(list(state["destinations"]))
+
+    def prepare(self, destinations: NDArray[np.int64]) -> None:
+        """Make the routes of all bodies that have one of these destinations.
+
+        Corners around one edge have the number of the first body with routes, so restored people
+        need those of all bodies that the saved model had.
+        """
+        for body in np.unique(destinations % self.bodies).tolist():
+            self._router(body)
 
     @property
     def destinations(self) -> int:
@@ -172,6 +184,21 @@ class Environment(Saved):
         """Names of the exits of a destination, open or closed; none for a gate or a point."""
         names = self._destinations[destination // self.bodies]
         return tuple(e.name for e in self.plan.exits if names is None or e.name in names)
+
+    def gate(self, destination: int) -> str | None:
+        """Name of the gate to which a destination leads across; None for exits and points."""
+        names = self._destinations[destination // self.bodies]
+        if names is None or is_point(names) or self.exits(destination):
+            return None
+        return str(names[0])
+
+    def route_graph(self, type_index: int) -> nx.DiGraph:
+        """The routes of people of one type, as ``FloorPlan.route_graph`` has those of adults.
+
+        Routes of people who use no stairs lead over ramps and through lifts. The graph is the same
+        object until the floor plan changes.
+        """
+        return self._router(self._body_of[type_index]).graph
 
     def targets(self, points: NDArray[np.float64], destinations: NDArray[np.int64]) -> Targets:
         """Targets of people, who may have different body sizes.

@@ -63,7 +63,9 @@ class Deciding(NamedTuple):
         site: the routes.  ``site.targets(positions, destinations)`` gives targets;
             ``site.destination(exit_names, type)`` gives the number of a set of exits for a
             pedestrian type, since routes depend on the core radius; ``site.exits(destination)``
-            gives the names of its exits.
+            gives the names of its exits, and ``site.gate(destination)`` that of the gate to cross.
+            ``site.route_graph(type)`` is the graph of a type's routes, and ``site.body(type)`` the
+            number of their body: types of one body share their routes.
     """
 
     pedestrians: NDArray[np.int64]

@@ -5,21 +5,19 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.crowd.hooks import World
+from mesa_mobility.crowd.lifts.lifts import NOBODY
 from mesa_mobility.crowd.tactics.deciding import Deciding
 from mesa_mobility.crowd.tactics.target_choice import TargetChoice
 from mesa_mobility.errors import ModelError
 from mesa_mobility.floorplan import Targets
 from mesa_mobility.plugins.annotations import Range
 from mesa_mobility.schema import Array, Kind
-
-if TYPE_CHECKING:
-    import networkx as nx
 
 AGAIN = Array("f8", high=1e9, infinite=True)
 """When each person chooses again, s, in a checkpoint: -inf before the first time."""
@@ -30,7 +28,8 @@ class RouteChoice(TargetChoice):
 
     Subclasses set ``name`` and define ``routes``. Everybody chooses at their first decision, and
     again at random, every ``interval`` seconds on average. Between gates people take the shortest
-    way. People with a route of their own keep it. An object of this class serves one model.
+    way. People with a route of their own keep it, and so do people on an escalator or in a lift,
+    until they get out. An object of this class serves one model.
 
     Args:
         interval: mean seconds between two choices; by default people choose once.
@@ -54,11 +53,6 @@ class RouteChoice(TargetChoice):
     def members(self) -> Mapping[str, Kind]:
         """What the members of ``state`` are that are not a subclass's own."""
         return super().members() or {**self.setting_kinds(), "_again": AGAIN}
-
-    @property
-    def graph(self) -> nx.DiGraph:
-        """The route graph of the floor plan as it is now; see ``FloorPlan.route_graph``."""
-        return self._model.floor_plan.route_graph
 
     @abstractmethod
     def routes(self, deciding: Deciding, who: NDArray[np.int64]) -> Sequence[Sequence[str] | None]:
@@ -98,9 +92,21 @@ class RouteChoice(TargetChoice):
             self._again = np.append(self._again, np.full(more, -np.inf))
         new = self._again[rows] == -np.inf
         self._again[rows[new & (self._model.crowd.agenda["journey"][rows] > 0)]] = np.inf
-        who: NDArray[np.int64] = np.flatnonzero(self._again[rows] <= deciding.elapsed)
+        due = (self._again[rows] <= deciding.elapsed) & ~self._ride(deciding)
+        who: NDArray[np.int64] = np.flatnonzero(due)
         waits = np.full(len(who), math.inf)
         if math.isfinite(self.interval):
             waits = deciding.rng.exponential(self.interval, len(who))
         self._again[rows[who]] = deciding.elapsed + waits
         return who
+
+    def _ride(self, deciding: Deciding) -> NDArray[np.bool_]:
+        """(n,) whether each is in a lift, is to get into it, or waits on the first step of an
+        escalator; those whom it carries take no decisions."""
+        rows, lifts = deciding.pedestrians, self._model.lifts
+        ride = np.zeros(len(rows), dtype=np.bool_)
+        if len(lifts):
+            ride |= (lifts.rides(rows) != NOBODY) | (lifts.car_of(deciding.positions) != NOBODY)
+        if len(self._model.escalators):
+            ride |= self._model.escalators.waits(rows, deciding.positions)
+        return ride

@@ -34,13 +34,11 @@ class PlanChanges:
 
     def toggle_opening(self, name: str) -> None:
         """Close a door or exit, or stairs or a lift of this name, or open what is closed."""
-        joints = {} if self._building is None else self._building.gates
-        names = [gate.name for gate in joints[name]] if name in joints else [name]
-        change = self._plan.open_gate
-        if all(self._plan.is_open(each) for each in names):
-            change = self._plan.close_gate
-        for each in names:
-            change(each)
+        building, plan = self._building, self._plan
+        if building is not None and name in building.gates:
+            (building.close if building.is_open(name) else building.open)(name)
+        else:
+            (plan.close_gate if plan.is_open(name) else plan.open_gate)(name)
 
     def toggle_obstacle(self, number: int) -> None:
         """Take away an obstacle of the plan as it was made, or bring it back.

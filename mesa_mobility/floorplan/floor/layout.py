@@ -59,6 +59,10 @@ class Layout:
         self._steps = np.concatenate([np.empty((0, 4)), *(each.steps for each in self._seams)])
         self._copied = shapely.union_all([part for each in self._seams for part in each.copies])
         self._exits = tuple(exits)
+        self._copies = {
+            name: copy for each in self._seams for name, copy in each.copied_gates.items()
+        }
+        self._owners = {copy.name: name for name, copy in self._copies.items()}
         self._gates = (
             *gates,
             *(gate for each in self._seams for gate in each.gates),
@@ -174,3 +178,12 @@ class Layout:
                 return opening
         names = ", ".join(repr(opening.name) for opening in self.openings())
         raise FloorPlanError(f"there is no gate or exit {name!r}; there are {names}")
+
+    def drawings(self, name: str) -> tuple[Gate | Exit, ...]:
+        """The gate or exit of this name; for a gate of a seam its drawings on both sheets.
+
+        The drawing on the sheet to which the gate belongs comes first, whichever name is given.
+        Raises FloorPlanError if there is none.
+        """
+        own = self.gate(self._owners.get(name, name))
+        return (own, self._copies[own.name]) if own.name in self._copies else (own,)

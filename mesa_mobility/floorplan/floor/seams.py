@@ -186,6 +186,12 @@ class Seam:
         return gates[0], gates[3]
 
     @property
+    def copied_gates(self) -> dict[str, Gate]:
+        """The copy of each of the two gates, on the other sheet, by the name of the gate."""
+        gates = self.gates
+        return {gates[0].name: gates[2], gates[3].name: gates[1]}
+
+    @property
     def steps(self) -> NDArray[np.float64]:
         """(k, 4) x1, y1, x2, y2 in metres of the edges at which the steps begin, on the first sheet
         and on the second; none without steps."""
