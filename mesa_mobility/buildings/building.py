@@ -28,7 +28,7 @@ from mesa_mobility.buildings.refuge import Refuge
 from mesa_mobility.buildings.sheets import Sheet, sheets_of
 from mesa_mobility.buildings.ways import gates_of_way_out
 from mesa_mobility.errors import FloorPlanError
-from mesa_mobility.floorplan import FloorPlan, Gate, Room
+from mesa_mobility.floorplan import Exit, FloorPlan, Gate, Room
 from mesa_mobility.floorplan.floor.checks import read_polygon
 from mesa_mobility.floorplan.formats.geojson import label
 from mesa_mobility.plugins.registry import did_you_mean
@@ -206,7 +206,9 @@ class Building:
         return found | {shaft.name: shaft.gates for shaft in self.floor_plan.shafts}
 
     def close(self, name: str) -> None:
-        """Close the stairs, ramp, escalator or lift of this name: all of its gates become walls.
+        """Close the stairs, ramp, escalator or lift of this name, or a gate or exit.
+
+        All gates of stairs, a ramp, an escalator or a lift become walls.
 
         Raises:
             FloorPlanError: no such name.
@@ -215,12 +217,12 @@ class Building:
             self.floor_plan.close_gate(gate.name)
 
     def open(self, name: str) -> None:
-        """Open the stairs, ramp, escalator or lift of this name again; see `close`."""
+        """Open what has this name again; see `close`."""
         for gate in self._gates_of(name):
             self.floor_plan.open_gate(gate.name)
 
     def is_open(self, name: str) -> bool:
-        """Whether all gates of the stairs, ramp, escalator or lift of this name are open."""
+        """Whether what has this name is open; stairs are if all of their gates are; see `close`."""
         return all(self.floor_plan.is_open(gate.name) for gate in self._gates_of(name))
 
     def way_out(self, came: Sequence[str], level: int, *, climbs: bool = True) -> tuple[str, ...]:
@@ -248,14 +250,19 @@ class Building:
         number = self.level(level).number
         return gates_of_way_out(came, number, climbs, joints, self.gates, entrances)
 
-    def _gates_of(self, name: str) -> tuple[Gate, ...]:
-        gates = self.gates
-        if name not in gates:
-            raise FloorPlanError(
-                f"there are no stairs, ramp, escalator or lift {name!r}"
-                f"{did_you_mean(str(name), gates)}; there are {', '.join(map(repr, gates))}"
-            )
-        return gates[name]
+    def _gates_of(self, name: str) -> tuple[Gate | Exit, ...]:
+        known = self.gates
+        if name in known:
+            return known[name]
+        openings = {each.name: each for each in self.floor_plan.openings()}
+        if name in openings:
+            return (openings[name],)
+        names = [*known, *(each.name for level in self.levels for each in level.exits)]
+        raise FloorPlanError(
+            f"there are no stairs, ramp, escalator, lift, gate or exit {name!r}"
+            f"{did_you_mean(str(name), {**known, **openings})}; there are "
+            f"{', '.join(map(repr, names))}, and gates"
+        )
 
     @cached_property
     def rooms(self) -> tuple[Room, ...]:

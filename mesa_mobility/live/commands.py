@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesa_mobility.errors import LiveError, MobilityError
-from mesa_mobility.floorplan import FloorPlan
 from mesa_mobility.live.fields import Fields, shown, text_of
 from mesa_mobility.live.levels import in_plane, in_true_places
 from mesa_mobility.live.run import Command, Run
@@ -118,14 +117,18 @@ def _wait(fields: Fields, client: Hashable) -> Command:
     return command
 
 
-def _changing(change: Callable[[FloorPlan, str], None]) -> Reader:
-    """Reads a command that opens or closes a door, gate or exit."""
+def _changing(*, opens: bool) -> Reader:
+    """Reads a command that opens or closes a gate or exit, or stairs or a lift."""
 
     def read(fields: Fields, client: Hashable) -> Command:
         name = fields.text("opening")
 
         def command(run: Run) -> dict[str, Any]:
-            change(run.model.floor_plan, name)
+            building, plan = run.model.building, run.model.floor_plan
+            if building is not None:
+                (building.open if opens else building.close)(name)
+            else:
+                (plan.open_gate if opens else plan.close_gate)(name)
             return {}
 
         return command
@@ -174,8 +177,8 @@ _COMMANDS: dict[str, Reader] = {
     "release": _release,
     "leave": _leave,
     "wait": _wait,
-    "open": _changing(FloorPlan.open_gate),
-    "close": _changing(FloorPlan.close_gate),
+    "open": _changing(opens=True),
+    "close": _changing(opens=False),
     "add": _add,
     "pause": _playing(False),
     "resume": _playing(True),

@@ -269,6 +269,12 @@ def test_stairs_and_lifts_are_closed_and_opened_as_a_whole():
         with pytest.raises(FloorPlanError) as said:
             call("soth")
         assert str(said.value) == (
-            "there are no stairs, ramp, escalator or lift 'soth', did you mean 'south'?; "
-            "there are 'south', 'lift'"
+            "there are no stairs, ramp, escalator, lift, gate or exit 'soth', did you mean "
+            "'south'?; there are 'south', 'lift', 'west', and gates"
         )
+    exit_ = building.floor_plan.exits[0].name
+    for name in (exit_, "lift at level 1"):
+        building.close(name)
+        assert not building.is_open(name)
+        assert len(plan.closed_openings()) == 1
+        building.open(name)

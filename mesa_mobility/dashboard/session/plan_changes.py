@@ -35,7 +35,7 @@ class PlanChanges:
     def toggle_opening(self, name: str) -> None:
         """Close a door or exit, or stairs or a lift of this name, or open what is closed."""
         building, plan = self._building, self._plan
-        if building is not None and name in building.gates:
+        if building is not None:
             (building.close if building.is_open(name) else building.open)(name)
         else:
             (plan.close_gate if plan.is_open(name) else plan.open_gate)(name)
