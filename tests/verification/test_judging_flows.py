@@ -250,13 +250,21 @@ def on_a_stair(mean: float, step: float, densities: int = 10) -> dict:
     ],
 )
 def test_people_walk_on_stairs_as_fast_as_measured_and_down_faster(down, up, wrong):
-    assert unmet(storeys.TESTS["rimea-13-speeds"].judge([down, up])) == wrong
+    assert unmet(storeys.TESTS["rimea-13-speeds"].pooled([[down, up]])) == wrong
+
+
+def test_speeds_on_stairs_of_all_seeds_count_together():
+    slow, fast = on_a_stair(0.6, 0.1), on_a_stair(0.7, 0.1)
+    pooled = storeys.TESTS["rimea-13-speeds"].pooled
+    # Down 0.6 and 0.7 m/s, 0.65 m/s on average; up 0.6 m/s, or 0.7 m/s.
+    assert unmet(pooled([[slow, slow], [fast, slow]])) == []
+    assert unmet(pooled([[slow, fast], [fast, fast]])) == ["least speed down less that up m/s"]
 
 
 def test_speeds_beyond_the_measured_densities_do_not_count():
     crowd = on_a_stair(0.7, 0.1)
     crowd["density"] = crowd["density"] + 1.0
-    assert unmet(storeys.TESTS["rimea-13-speeds"].judge([crowd, crowd])) == [
+    assert unmet(storeys.TESTS["rimea-13-speeds"].pooled([[crowd, crowd]])) == [
         "speeds down",
         "share of the speeds down within the band",
         "speeds up",
