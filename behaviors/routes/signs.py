@@ -68,7 +68,8 @@ class Signs(RouteChoice):
     Journal of Fire Protection Engineering 17: 41-64, the visibility catchment area). It must be
     ahead of a person and no wall before it. Each person has one chance to notice each sign: 38 %
     did in an experiment, and most of these followed it (Xie, Filippidis, Galea, Blackshields and
-    Lawrence 2012, Fire and Materials 36: 367-382). The others go on as before.
+    Lawrence 2012, Fire and Materials 36: 367-382). The others go on as before. So do people who
+    cannot take the way, such as people in wheelchairs if it leads over stairs.
 
     Args:
         signs: the signs.
@@ -105,6 +106,10 @@ class Signs(RouteChoice):
         for sign in self.signs:
             for name in sign.gates:
                 model.floor_plan.gate(name)
+        self._serves = {
+            climbs: np.array([_is_way(sign.gates, model, climbs) for sign in self.signs])
+            for climbs in (False, True)
+        }
 
     def routes(self, deciding: Deciding, who: NDArray[np.int64]) -> list[Sequence[str] | None]:
         """The gates of the first sign in the list that somebody notices now and follows."""
@@ -117,6 +122,8 @@ class Signs(RouteChoice):
         self._passed[rows, -1] = True
         headings = self._model.crowd.heading[rows]
         facing = np.column_stack([np.cos(headings), np.sin(headings)])
+        types = self._model.pedestrian_types
+        serves = np.array([self._serves[bool(types[k].climbs)] for k in deciding.types[who]])
         given: list[Sequence[str] | None] = [None] * len(who)
         for number, sign in enumerate(self.signs):
             there = np.array(sign.position)
@@ -130,8 +137,16 @@ class Signs(RouteChoice):
             near = near[clear]
             self._passed[rows[near], number] = True
             follows = rng.random(len(near)) < self.noticed
-            follows &= rng.random(len(near)) < self.followed
+            follows &= (rng.random(len(near)) < self.followed) & serves[near, number]
             for k in near[follows].tolist():
                 if given[k] is None:
                     given[k] = sign.gates
         return given
+
+
+def _is_way(gates: Sequence[str], model: World, climbs: bool) -> bool:
+    """Whether people who use stairs, or those who do not, can go through all of these gates."""
+    if model.building is None:
+        return True
+    level = model.building.levels[0].number
+    return model.building.way_out(gates, level, climbs=climbs) == tuple(gates)[::-1]

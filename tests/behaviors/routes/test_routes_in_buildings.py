@@ -1,7 +1,16 @@
 """Routes chosen in buildings: over stairs and escalators, and by lifts."""
 
+import math
+
 import pytest
-from mesa_mobility.behaviors import BlockedWays, CongestionRouting, FamiliarRoutes, NearestExit
+from mesa_mobility.behaviors import (
+    BlockedWays,
+    CongestionRouting,
+    FamiliarRoutes,
+    NearestExit,
+    Sign,
+    Signs,
+)
 from mesa_mobility.behaviors.routes.flows import flows_through, in_lift, on_escalator, on_stairs
 
 from mesa_mobility import (
@@ -180,7 +189,7 @@ def test_stairs_have_names_in_familiar_ways():
     assert wheelchair.route == ("lift at level 1",)
     with pytest.raises(FloorPlanError, match="'nort', did you mean 'north'"):
         choice.know([upstairs], ["nort"])
-    with pytest.raises(FloorPlanError, match="no stairs, ramp, escalator or lift 'no'"):
+    with pytest.raises(FloorPlanError, match="no stairs, ramp, escalator, lift, gate or exit 'no'"):
         PedestrianModel(building, target_choice=FamiliarRoutes(["no"])).add_pedestrians(places)
 
 
@@ -203,6 +212,25 @@ def test_people_know_the_part_of_a_way_between_them_and_the_entrance():
     assert building.way_out(["lift", "high"], 2, climbs=False) == ("lift at level 2",)
     # Nobody came from the second level, which has no exit.
     assert building.way_out(["high"], 1) == ()
+
+
+@pytest.mark.parametrize(
+    ("gates", "who"),
+    [(("north after", "north before"), ADULT), (("lift at level 1",), WHEELCHAIR)],
+)
+def test_signs_send_only_people_who_can_take_their_way(gates, who):
+    building = lifted()
+    [[x, y]] = building.places([(23.9, 4.0)], 1)
+    sign = Sign((x, y), math.pi, gates)
+    choice = Signs([sign], noticed=1.0, followed=1.0, interval=0.1)
+    model = PedestrianModel(
+        building, pedestrian_types=[WHEELCHAIR, ADULT], target_choice=choice, rng=1
+    )
+    places = building.places([(2.0, 3.0), (2.0, 5.0)], 1)
+    people = model.add_pedestrians(places, type_index=[0, 1], headings=[0.0, 0.0])
+    model.run(max_seconds=2)
+    for person, kind in zip(people, (WHEELCHAIR, ADULT), strict=True):
+        assert (person.route == gates) == (kind is who)
 
 
 def test_nobody_goes_back_on_an_escalator():
