@@ -64,7 +64,7 @@ class CongestionRouting(RouteChoice):
         speeds, (heading, away) = inside.preferred_speeds[at], self._heading(deciding)
         new = [row not in self._under_way for row in rows.tolist()]
         self._under_way.update(rows.tolist())
-        others = heading >= 0
+        others = (heading >= 0) & np.isfinite(away)  # people without a way stand in no queue
         others[at] = False
         queues = _queues(heading[others], away[others], len(site.plan.openings()))
         queued = np.array([len(queue) for queue in queues])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesa_mobility import Deciding, ListOf, Pedestrian, Range, RouteChoice, World
 from mesa_mobility.buildings import ON_STAIRS
-from mesa_mobility.errors import ModelError
+from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.schema import Array, Kind, Several, Text, Whole
 
 
@@ -28,7 +28,8 @@ class FamiliarRoutes(RouteChoice):
 
     Args:
         came: names of the gates, stairs, ramps, escalators and lifts by which people have come in,
-            in order from the entrance on; ``know`` sets others.
+            in order from the exit on; in a building the exit itself may come first. ``know`` sets
+            others.
         share: of those who know a way, how many leave by it.
 
     Raises:
@@ -75,27 +76,35 @@ class FamiliarRoutes(RouteChoice):
         """The gates of the way back, or none."""
         draws = deciding.rng.random(len(who)).tolist()
         rows = deciding.pedestrians[who].tolist()
-        came = [self._known.get(row, self.came) for row in rows]
+        came = [tuple(self._known.get(row, self.came)) for row in rows]
         building = self._model.building
-        ways = [tuple(each[::-1]) for each in came]
-        if building is not None:
+        if building is None:
+            ways = [each[::-1] for each in came]
+        else:
             levels = building.true_places(deciding.positions[who])[1].tolist()
-            types = [self._model.pedestrian_types[k] for k in deciding.types[who].tolist()]
-            ways = [
-                () if level == ON_STAIRS else building.way_out(way, level, climbs=bool(kind.climbs))
-                for way, level, kind in zip(came, levels, types, strict=True)
-            ]
+            types = self._model.pedestrian_types
+            climbs = [bool(types[k].climbs) for k in deciding.types[who].tolist()]
+            keys = list(zip(came, levels, climbs, strict=True))
+            found = {
+                (way, level, climbing): building.way_out(way, level, climbs=climbing)
+                for way, level, climbing in set(keys)
+                if level != ON_STAIRS
+            }
+            ways = [found.get(key, ()) for key in keys]
         return [way if draw < self.share else () for way, draw in zip(ways, draws, strict=True)]
 
 
 def _check(names: Sequence[str], model: World) -> None:
     """Raise FloorPlanError for a name that is neither a gate's nor, in a building, that of stairs,
-    a ramp, an escalator or a lift."""
+    a ramp, an escalator or a lift, or for a way of which it is not known where it begins."""
     if model.building is not None:
         model.building.way_out(names, model.building.levels[0].number)
         return
+    exits = {each.name for each in model.floor_plan.exits}
     for name in names:
         model.floor_plan.gate(name)
+        if name in exits:
+            raise FloorPlanError(f"way in: exit {name!r}, expected names of gates")
 
 
 def _names(gates: Sequence[str]) -> tuple[str, ...]:

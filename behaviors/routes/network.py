@@ -93,7 +93,8 @@ class Network:
             if graph.nodes[other]["opening"] not in doors
         ]
         ways = nx.restricted_view(graph, [], within)
-        backwards = nx.to_scipy_sparse_array(ways, format="csr").T.tocsr()
+        if openings:  # otherwise the graph may be empty
+            backwards = nx.to_scipy_sparse_array(ways, format="csr").T.tocsr()
         for number, nodes in enumerate(openings.values()):
             self._from_nodes[:, number] = dijkstra(backwards, indices=nodes, min_only=True)
         self._lengths = np.array(

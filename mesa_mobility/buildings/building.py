@@ -196,7 +196,7 @@ class Building:
         """Names of the exits on a level."""
         return tuple(each.name for each in self.level(level).exits)
 
-    @property
+    @cached_property
     def gates(self) -> dict[str, tuple[Gate, ...]]:
         """The gates in the plane of each stair, ramp, escalator and lift, by its name."""
         found: dict[str, tuple[Gate, ...]] = {}
@@ -228,27 +228,28 @@ class Building:
     def way_out(self, came: Sequence[str], level: int, *, climbs: bool = True) -> tuple[str, ...]:
         """Names of the gates by which people leave as they came in, for a route.
 
-        The way in began on a level with an exit. People leave by the part of it between their level
-        and that one. There are no gates if they are elsewhere, or cannot go back that way, such as
+        The way in began at an exit. People leave by the part of it between their level and that of
+        the exit. There are no gates if they are elsewhere, or cannot go back that way, such as
         people in wheelchairs over stairs, or anybody on an escalator.
 
         Args:
             came: names of stairs, ramps, escalators and lifts, and of gates between them, from the
-                entrance on. Names of gates alone are given back in reverse order.
+                exit on. The exit itself may come first. It must if the first stairs, ramp,
+                escalator or lift joins several levels with exits. Names of gates alone are given
+                back in reverse order.
             level: number of the level where people are.
             climbs: whether they use stairs (`PedestrianType.climbs`).
 
         Raises:
-            FloorPlanError: no such name, or no such level.
+            FloorPlanError: no such name, no such level, an exit behind the first name, or a way
+                that may begin on several levels.
         """
-        known = {each.name for each in self.floor_plan.gates}
         for name in came:
-            if name not in known:
-                self._gates_of(name)
+            self._gates_of(name)
         joints = {each.name: each for each in (*self.stairs, *self.lifts)}
-        entrances = [each.number for each in self.levels if each.exits]
+        exits = {each.name: level.number for level in self.levels for each in level.exits}
         number = self.level(level).number
-        return gates_of_way_out(came, number, climbs, joints, self.gates, entrances)
+        return gates_of_way_out(came, number, climbs, joints, self.gates, exits)
 
     def _gates_of(self, name: str) -> tuple[Gate | Exit, ...]:
         known = self.gates

@@ -6,6 +6,7 @@ from mesa_mobility.buildings.connections.escalator import DOWN, UP, Escalator
 from mesa_mobility.buildings.connections.lift import Lift
 from mesa_mobility.buildings.connections.ramp import Ramp
 from mesa_mobility.buildings.connections.stairs import Stairs
+from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Gate
 
 Joint = Stairs | Ramp | Escalator | Lift
@@ -22,29 +23,38 @@ def gates_of_way_out(
     climbs: bool,
     joints: Mapping[str, Joint],
     gates: Mapping[str, Sequence[Gate]],
-    entrances: Sequence[int],
+    exits: Mapping[str, int],
 ) -> tuple[str, ...]:
     """Names of the gates of a way out; see `Building.way_out`.
 
     Args:
-        came: stairs, ramps, escalators, lifts and gates, from the entrance on.
+        came: stairs, ramps, escalators, lifts and gates, from the exit on, which may come first.
         level: number of the level where people are.
         climbs: whether they use stairs.
         joints: what joins levels, by its name.
         gates: the gates of each in the plane, those of flights as `Seam.gates`, from the top.
-        entrances: numbers of the levels with exits.
+        exits: the level of each exit, by its name.
+
+    Raises:
+        FloorPlanError: an exit behind the first name, or a way that may begin on several levels.
     """
+    starts = set(exits.values())
+    if len(came) and came[0] in exits:
+        starts, came = {exits[came[0]]}, came[1:]
+    if behind := [name for name in came if name in exits]:
+        raise FloorPlanError(f"way in: exit {behind[0]!r}, expected an exit only as the first name")
     first = next((joints[name] for name in came if name in joints), None)
     if first is None:
         owners = {gate.name: joints[name] for name, own in gates.items() for gate in own}
         used = [name for name in came if name not in owners or _is_for(owners[name], climbs)]
         return tuple(used[::-1])
-    ways = [
-        _way_back(came, level, climbs, joints, gates, start)
-        for start in entrances
-        if start in _levels(first)
-    ]
-    return max(ways, key=len, default=())
+    found = sorted(starts.intersection(_levels(first)))
+    if len(found) > 1:
+        raise FloorPlanError(
+            f"way in over {first.name!r}: levels {', '.join(map(str, found))} have exits, expected "
+            "the exit by which people came in as the first name"
+        )
+    return _way_back(came, level, climbs, joints, gates, found[0]) if found else ()
 
 
 def _way_back(

@@ -280,7 +280,7 @@ class Dynamics(Saved):
         )
         if not len(escalators):
             return shut
-        if len(journeys):
+        if len(journeys) and escalators.looks(now):
             # Those who are carried on lose their paths, on which crossed gates are found.
             belts = escalators.on_belts(inside, crowd)
             journeys.advance(belts, now, crowd, table, self._model.rng)

@@ -93,8 +93,12 @@ class PointRoutes:
         direct = self._sees(positions, np.broadcast_to(place, positions.shape))
         points[direct] = place
         lengths[direct] = _away(positions[direct], np.array(place))
-        for k in np.flatnonzero(~direct).tolist():
-            points[k], gates[k], lengths[k] = self._by_node(positions[k], to_go)
+        rest = np.flatnonzero(~direct)
+        # People who would go on from one place, such as the door of a lift, have one way.
+        starts, numbers = np.unique(positions[rest], axis=0, return_inverse=True)
+        for number, start in enumerate(starts):
+            own = rest[numbers.reshape(-1) == number]
+            points[own], gates[own], lengths[own] = self._by_node(start, to_go)
         return Aims(points, gates, lengths)
 
     def _by_node(

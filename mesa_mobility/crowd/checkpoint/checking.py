@@ -92,7 +92,7 @@ def sizes_of(model: CrowdModel) -> dict[str, Any]:
         "exits": [each.name for each in plan.exits],
         "gates": [each.name for each in plan.gates],
         "ways": [
-            *(each.name for each in plan.gates),
+            *(each.name for each in plan.openings()),
             *(model.building.gates if model.building else ()),
         ],
         "openings": [each.name for each in plan.openings()],

@@ -166,9 +166,6 @@ def _load(
             check(states[name], Members(part.members()), name, sizes_of(model))
         part.restore(states[name])
     check_crowd(model, states)
-    scene = model._scene
-    went = scene.crowd.destination[: model.population.count]
-    scene.environment.prepare(went.astype(np.int64))
     check_ids(content["people"], model.inside)
     model.population.make_agents(
         model, content["people"]["unique_ids"], content["people"]["last_id"], model.frame

@@ -113,6 +113,10 @@ class Escalators(Saved):
             found.append(inside[near.who[on]])
         return np.unique(np.concatenate(found))
 
+    def looks(self, frame: int) -> bool:
+        """Whether people may be taken up or carried on in this frame."""
+        return frame % EVERY == 0
+
     def next_look(self, frame: int) -> int:
         """The next frame after this one in which something may happen."""
         return (frame // EVERY + 1) * EVERY
@@ -133,7 +137,7 @@ class Escalators(Saved):
         riding = inside[self._rides[inside] != NOBODY]
         self._rides[riding[crowd.option[riding] != CARRIED]] = NOBODY
         # In frames between two looks, which some runs pass over, nothing happens.
-        if frame % EVERY or not len(inside):
+        if not self.looks(frame) or not len(inside):
             return
         points = np.column_stack([crowd.x[inside], crowd.y[inside]])
         for number, belt in enumerate(self._belts):

@@ -17,7 +17,7 @@ from mesa_mobility.crowd.state.surroundings import Surroundings, survey
 from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import FloorPlan, Router, Targets
 from mesa_mobility.floorplan.routing.targets import Destination, is_point
-from mesa_mobility.schema import Each, Either, Kind, Maybe, Members, Real, Several, Text
+from mesa_mobility.schema import Each, Either, Kind, Maybe, Members, Real, Several, Text, Whole
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -84,25 +84,29 @@ class Environment(Saved):
         """What the members of ``state`` are."""
         number = Real(-FARTHEST, FARTHEST)
         ways = Either(Each(number, number), Several(Text("openings"), tuple))
-        return {"plan": Members(self.plan.members()), "destinations": Several(Maybe(ways))}
+        return {
+            "plan": Members(self.plan.members()),
+            "destinations": Several(Maybe(ways)),
+            "routed": Several(Whole(below="bodies")),
+        }
 
     def state(self) -> dict[str, Any]:
-        """The destinations, in the order of their numbers."""
-        return {"plan": self.plan.state(), "destinations": self._destinations}
+        """The destinations, in the order of their numbers, and the bodies that have routes.
+
+        Corners around one edge have the number of the first body with routes.
+        """
+        return {
+            "plan": self.plan.state(),
+            "destinations": self._destinations,
+            "routed": [body for body, router in enumerate(self._routers) if router is not None],
+        }
 
     def restore(self, state: Mapping[str, Any]) -> None:
         """Take over what ``state`` has given, the floor plan's changes included."""
         self.plan.restore(state["plan"])
         if self._destinations != state["destinations"]:
             self._make_routers(list(state["destinations"]))
-
-    def prepare(self, destinations: NDArray[np.int64]) -> None:
-        """Make the routes of all bodies that have one of these destinations.
-
-        Corners around one edge have the number of the first body with routes, so restored people
-        need those of all bodies that the saved model had.
-        """
-        for body in np.unique(destinations % self.bodies).tolist():
+        for body in state["routed"]:
             self._router(body)
 
     @property

@@ -74,6 +74,8 @@ class Layout:
         check_zones(self._walkable, self._zones)
         self._given_rooms = check_rooms(rooms, self._walkable)
         checks.check_names([*self._exits, *self._gates])
+        self._openings: tuple[Gate | Exit, ...] = (*self._gates, *self._exits)
+        self._named = {opening.name: opening for opening in self._openings}
 
     @property
     def walkable(self) -> Polygon:
@@ -169,15 +171,15 @@ class Layout:
 
     def openings(self) -> tuple[Gate | Exit, ...]:
         """Gates, then exits: the numbering of `Targets.gates`."""
-        return (*self._gates, *self._exits)
+        return self._openings
 
     def gate(self, name: str) -> Gate | Exit:
         """The gate or exit of this name; raises FloorPlanError if there is none."""
-        for opening in self.openings():
-            if opening.name == name:
-                return opening
-        names = ", ".join(repr(opening.name) for opening in self.openings())
-        raise FloorPlanError(f"there is no gate or exit {name!r}; there are {names}")
+        found = self._named.get(name) if isinstance(name, str) else None
+        if found is None:
+            names = ", ".join(map(repr, self._named))
+            raise FloorPlanError(f"there is no gate or exit {name!r}; there are {names}")
+        return found
 
     def drawings(self, name: str) -> tuple[Gate | Exit, ...]:
         """The gate or exit of this name; for a gate of a seam its drawings on both sheets.

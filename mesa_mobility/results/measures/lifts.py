@@ -122,6 +122,9 @@ def by_lift(trajectories: Tracks, building: Building) -> pd.DataFrame:
     """
     import pandas as pd
 
+    if not building.lifts:
+        true_places(trajectories)  # which must have elevations
+        return pd.DataFrame([], columns=["lift", *COLUMNS]).set_index("lift")
     riders = _Riders(trajectories, building)
     lifts = building.lifts_at(true_places(trajectories))
     elevation = {level.number: level.elevation for level in building.levels}

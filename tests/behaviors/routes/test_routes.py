@@ -175,8 +175,22 @@ def test_some_know_another_way():
     assert other.route == ("high",)
     with pytest.raises(FloorPlanError, match="no gate or exit 'middle'"):
         choice.know([one], ["middle"])
+    with pytest.raises(FloorPlanError, match="way in: exit 'east', expected names of gates"):
+        choice.know([one], ["east", "high"])
     with pytest.raises(ModelError, match="expected a list of names"):
         choice.know([one], "high")
+
+
+def test_people_wait_if_no_exit_is_open():
+    plan = FloorPlan(box(0, 0, 8, 4), exits=[Exit("out", (8, 1), (8, 3))])
+    model = model_of(plan, strider(), target_choice=CongestionRouting(interval=0.1))
+    person = put(model, 1.0, 2.0)
+    plan.close_gate("out")
+    advance(model, 60)
+    assert model.inside == 1
+    plan.open_gate("out")
+    advance(model, 240)
+    assert person not in model.agents
 
 
 @pytest.mark.thorough

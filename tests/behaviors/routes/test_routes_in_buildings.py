@@ -214,6 +214,42 @@ def test_people_know_the_part_of_a_way_between_them_and_the_entrance():
     assert building.way_out(["high"], 1) == ()
 
 
+def test_people_do_not_go_up_to_the_exit_by_which_they_did_not_come():
+    bridge = Level(1, HALL, elevation=RISE, exits=[Exit("bridge", (0, 3), (0, 5))])
+    building = Building([GROUND, bridge], [straight("main", SOUTH, bridge)])
+    down = ("main after", "main before")
+    assert [building.way_out(["west", "main"], k) for k in (0, 1)] == [(), down]
+    assert [building.way_out(["bridge", "main"], k) for k in (0, 1)] == [down[::-1], ()]
+    with pytest.raises(FloorPlanError, match="over 'main': levels 0, 1 have exits, expected the"):
+        building.way_out(["main"], 0)
+    with pytest.raises(FloorPlanError, match="exit 'west', expected an exit only as the first"):
+        building.way_out(["main", "west"], 1)
+    model = PedestrianModel(
+        building, pedestrian_types=[ADULT], target_choice=FamiliarRoutes(["west", "main"], share=1)
+    )
+    people = model.add_pedestrians([building.places([(3.0, 4.0)], k)[0] for k in (0, 1)])
+    assert [person.route for person in people] == [(), down]
+    ambiguous = PedestrianModel(building, target_choice=FamiliarRoutes(["main"]))
+    with pytest.raises(FloorPlanError, match="expected the exit by which people came in"):
+        ambiguous.add_pedestrians(building.places([(3.0, 4.0)], 1))
+
+
+def test_people_without_a_way_stand_in_no_queue():
+    # Each stair leads towards an exit of its own; at y = 3.7 the south one is nearer by a little.
+    stairs = [straight("south", SOUTH), straight("north", ((16, 6.8), (16, 8)))]
+    building = Building([GROUND, FIRST], stairs)
+    climber = PedestrianType(mobility_map=strider(), name="climber")
+    other = PedestrianType(mobility_map=statues(), name="other", climbs=False)
+    model = PedestrianModel(
+        building, pedestrian_types=[climber, other], target_choice=CongestionRouting(), rng=1
+    )
+    # In the plane, the nearest exit of those upstairs is the east one, towards which south leads.
+    there = [(1.0 + 0.8 * (k % 4), 2.0 + 0.8 * (k // 4)) for k in range(12)]
+    model.add_pedestrians(building.places(there, 1), type_index=1)
+    [person] = model.add_pedestrians(building.places([(12.0, 3.7)], 1))
+    assert person.route == ("south after", "south before")
+
+
 @pytest.mark.parametrize(
     ("gates", "who"),
     [(("north after", "north before"), ADULT), (("lift at level 1",), WHEELCHAIR)],
