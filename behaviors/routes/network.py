@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from mesa_mobility.behaviors.routes.flows import flows_through
 from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
 from mesa_mobility import FloorPlan
@@ -94,7 +95,10 @@ class Network:
         ]
         ways = nx.restricted_view(graph, [], within)
         if openings:  # otherwise the graph may be empty
-            backwards = nx.to_scipy_sparse_array(ways, format="csr").T.tocsr()
+            edges = np.array(ways.edges(), dtype=np.int64).reshape(-1, 2)
+            lengths = [length for _, _, length in ways.edges(data="weight")]
+            shape = (len(graph), len(graph))
+            backwards = csr_matrix((lengths, edges.T[::-1]), shape=shape)
         for number, nodes in enumerate(openings.values()):
             self._from_nodes[:, number] = dijkstra(backwards, indices=nodes, min_only=True)
         self._lengths = np.array(
