@@ -11,6 +11,7 @@ from shapely import LineString, Polygon
 
 from mesa_mobility.errors import FloorPlanError, ModelError
 from mesa_mobility.floorplan import FloorPlan, Gate
+from mesa_mobility.floorplan.floor.checks import read_polygon
 from mesa_mobility.floorplan.floor.extent import check_coordinates
 from mesa_mobility.floorplan.formats.assembling.drawn import Drawn, assembled, completed
 from mesa_mobility.floorplan.formats.assembling.exit_areas import WayOut
@@ -80,7 +81,8 @@ def drawing_of(shapes: Any, name: Any) -> Drawing:
             else:
                 drawn.obstacles += [each.polygon for each in areas]
         elif kind in NUMBERS:
-            feature = feature_of(kind, _unused(given, kind, taken), Polygon(points))
+            area = read_polygon(Polygon(points), f"{kind} {number}")
+            feature = feature_of(kind, _unused(given, kind, taken), area)
             numbers = {each: shape.get(each) for each in NUMBERS[kind]}
             feature["properties"] |= {each: value for each, value in numbers.items() if value}
             people.append(feature)

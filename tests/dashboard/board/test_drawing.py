@@ -29,6 +29,9 @@ ROOMS = [
     rectangle("obstacle", 2, 2, 3, 3),
 ]
 
+CROSSED = {"kind": "source", "name": "", "points": [[0, 0], [1, 1], [0, 1], [1, 0]]}
+"""An outline that crosses itself."""
+
 
 def test_walls_doors_and_exits_make_rooms():
     plan, _, notes = drawing_of(ROOMS, "two rooms")
@@ -119,6 +122,7 @@ def test_exits_beside_the_edge_are_moved_to_it():
         ([*ROOMS, {**rectangle("source", 1, 1, 2, 2), "seconds": "a"}], "seconds: got 'a'"),
         ([*ROOMS, {**rectangle("counter", 1, 1, 2, 2), "capacity": 0.5}], "capacity: got 0.5"),
         ([*ROOMS, rectangle("source", 20, 1, 22, 2)], "source 1 has no floor in it"),
+        ([*ROOMS, CROSSED], "source 7 is not valid: Self-intersection"),
         ([rectangle("floor", 0, 0, 6, 4)] * 5001, "expected at most 5,000"),
     ],
 )
