@@ -10,7 +10,7 @@ from mesa_mobility.errors import FloorPlanError
 from mesa_mobility.floorplan import Gate
 
 Joint = Stairs | Ramp | Escalator | Lift
-"""What joins levels."""
+"""Stairs and the like: each joins levels."""
 
 _UPPER, _LOWER = 3, -4
 """Which gates of stairs are next to the upper and to the lower level: the last of the highest

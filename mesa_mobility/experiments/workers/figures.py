@@ -76,7 +76,7 @@ def figures_by_place(model: Any) -> Row:
 
 
 def _of_building(summary: Mapping[str, Any]) -> Row:
-    """What a summary says of each lift, escalator and refuge, and who cannot leave."""
+    """Figures of each lift, escalator and refuge, and of people who cannot leave."""
     row: Row = {}
     for name in ("lifts", "escalators", "refuges"):
         for each in summary.get(name, ()):

@@ -126,7 +126,6 @@ def by_lift(trajectories: Tracks, building: Building) -> pd.DataFrame:
         true_places(trajectories)  # which must have elevations
         return pd.DataFrame([], columns=["lift", *COLUMNS]).set_index("lift")
     riders = _Riders(trajectories, building)
-    lifts = building.lifts_at(true_places(trajectories))
     elevation = {level.number: level.elevation for level in building.levels}
     table = []
     for number, each in enumerate(building.lifts):
@@ -149,7 +148,7 @@ def by_lift(trajectories: Tracks, building: Building) -> pd.DataFrame:
                 "mean_wait_s": waits.mean() if len(waits) else np.nan,
                 "longest_wait_s": waits.max() if len(waits) else np.nan,
                 "mean_ride_s": times.mean() if len(times) else np.nan,
-                "most": int(people_at_a_time(trajectories, lifts == number).max()),
+                "most": int(people_at_a_time(trajectories, riders.lift == number).max()),
             }
         )
     return pd.DataFrame(table, columns=["lift", *COLUMNS]).set_index("lift")
@@ -162,17 +161,22 @@ class _Riders:
         trajectories: a run in the building.
         building: the building.
 
+    Attributes:
+        lift: (n,) the lift in which each row of the tracks is, -1 for none.
+
     Raises:
         ResultsError: the tracks have no elevations.
     """
 
     def __init__(self, trajectories: Tracks, building: Building) -> None:
         order = trajectories.by_person
-        places = true_places(trajectories)[order]
+        places = true_places(trajectories)
+        self.lift = building.lifts_at(places)
+        places = places[order]
         self._person, self._frame = trajectories.person[order], trajectories.frame[order]
         self._xy, self._z = places[:, :2], places[:, 2]
         self._rate = trajectories.frame_rate
-        self._lift = building.lifts_at(places)
+        self._lift = self.lift[order]
         self._lifts = building.lifts
         self._elevation = {level.number: level.elevation for level in building.levels}
         self._same = np.diff(self._person) == 0

@@ -1,4 +1,4 @@
-"""What the environment of a crowd keeps in a checkpoint."""
+"""The environment of a crowd in checkpoints."""
 
 import numpy as np
 from shapely import box
